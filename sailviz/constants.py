@@ -1,0 +1,23 @@
+"""Physical and astronomical constants, each once, with its source. SI."""
+
+AU = 149_597_870_700.0  # m, exact: IAU 2012 Resolution B2
+DAY = 86_400.0  # s
+YEAR = 365.25 * DAY  # s, Julian year (IAU)
+
+MU_SUN = 1.327_124_400_18e20  # m3/s2, heliocentric gravitational constant, JPL DE405
+MU_EARTH = 3.986_004_418e14  # m3/s2, WGS 84 / IERS 2010
+RADIUS_SUN = 695_700e3  # m, nominal solar radius: IAU 2015 Resolution B3
+RADIUS_EARTH = 6_378_137.0  # m, equatorial: WGS 84
+J2_EARTH = 1.082_626_68e-3  # unnormalised second zonal harmonic: EGM96
+ROTATION_EARTH = 7.292_115_9e-5  # rad/s, sidereal: IERS 2010, to the digits used here
+
+STANDARD_GRAVITY = 9.806_65  # m/s2, exact: CGPM 1901, the g0 of specific impulse
+ELEMENTARY_CHARGE = 1.602_176_634e-19  # C, exact: SI 2019
+VACUUM_PERMITTIVITY = 8.854_187_8128e-12  # F/m: CODATA 2018
+ATOMIC_MASS = 1.660_539_066_60e-27  # kg: CODATA 2018
+MASS_ELECTRON = 9.109_383_7015e-31  # kg: CODATA 2018
+
+RADIATION_PRESSURE = 4.563e-6  # N/m2 at 1 au: thesis, section 3.1
+GRAVITY_AT_1_AU = MU_SUN / AU**2  # m/s2, the Sun's pull at 1 au, 5.930083519e-3
+WIND_POTENTIAL = 1_000.0  # V, potential of the solar-wind ions: thesis, (3.41)
+WIND_PRESSURE = 2.0e-9  # Pa, mean solar-wind dynamic pressure at 1 au: thesis, (3.41)

@@ -1,0 +1,78 @@
+"""Osculating orbital elements and back. SI and radians, two-body, any central body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+CIRCULAR = 1e-11  # eccentricity below which the apse line is rounding noise
+EQUATORIAL = 1e-11  # sine of the inclination below which the node is rounding noise
+
+
+@dataclass(frozen=True)
+class Elements:
+    """Classical elements, each (n,) or scalar: semi_major_axis m (negative on a hyperbola, inf on a parabola),
+    eccentricity, inclination, raan (right ascension or longitude of the ascending node), argument (of periapsis),
+    true_anomaly rad."""
+
+    semi_major_axis: np.ndarray
+    eccentricity: np.ndarray
+    inclination: np.ndarray
+    raan: np.ndarray
+    argument: np.ndarray
+    true_anomaly: np.ndarray
+
+
+def elements(position, velocity, mu) -> Elements:
+    """Osculating elements of a state. position m, velocity m/s : (..., 3), mu m3/s2.
+
+    Conventions where an angle loses its meaning: on an equatorial orbit the node is the x axis (raan 0), on a circular orbit
+    the periapsis is the node (argument 0). Without angular momentum inclination, raan and argument are NaN.
+    Source: Bate, Mueller and White, Fundamentals of Astrodynamics (1971), section 2.4; angles by atan2.
+    """
+    r_vec, v_vec = np.broadcast_arrays(np.asarray(position, float), np.asarray(velocity, float))
+    r = np.linalg.norm(r_vec, axis=-1)
+    v2 = np.sum(v_vec * v_vec, axis=-1)
+    h_vec = np.cross(r_vec, v_vec)
+    h = np.linalg.norm(h_vec, axis=-1)
+    e_vec = np.cross(v_vec, h_vec) / mu - r_vec / r[..., None]
+    e = np.linalg.norm(e_vec, axis=-1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        a = 1.0 / (2.0 / r - v2 / mu)
+        h_hat = np.where((h > 1e-14 * r * np.sqrt(v2))[..., None], h_vec / h[..., None], np.nan)
+    sin_i = np.hypot(h_hat[..., 0], h_hat[..., 1])
+    inclination = np.arctan2(sin_i, h_hat[..., 2])
+    flat = sin_i < EQUATORIAL
+    raan = np.where(flat, 0.0, np.arctan2(h_hat[..., 0], -h_hat[..., 1]))
+    node = np.stack([np.cos(raan), np.sin(raan), np.zeros_like(raan)], axis=-1)
+    ahead = np.cross(h_hat, node)  # 90 degrees ahead of the node, in the orbit plane
+    round_ = e < CIRCULAR
+    argument = np.where(round_, 0.0, np.arctan2(np.sum(e_vec * ahead, -1), np.sum(e_vec * node, -1)))
+    latitude = np.arctan2(np.sum(r_vec * ahead, -1), np.sum(r_vec * node, -1))
+    anomaly = np.mod(latitude - argument, 2 * np.pi)
+    return Elements(a, e, inclination, np.mod(raan, 2 * np.pi), np.mod(argument, 2 * np.pi), anomaly)
+
+
+def state(semi_major_axis, eccentricity, inclination, raan, argument, true_anomaly, mu):
+    """Position m and velocity m/s, each (..., 3), of elements in m and rad; negative semi-major axis for a hyperbola.
+
+    Source: Bate, Mueller and White (1971), section 2.5.
+    """
+    a, e, i, node, w, nu = np.broadcast_arrays(
+        semi_major_axis, eccentricity, inclination, raan, argument, true_anomaly
+    )
+    p = a * (1 - e * e)
+    r = p / (1 + e * np.cos(nu))
+    u = nu + w
+    cos_node, sin_node, cos_i, sin_i = np.cos(node), np.sin(node), np.cos(i), np.sin(i)
+
+    def in_plane(x, y):  # x along the node, y ahead of it
+        return np.stack(
+            [x * cos_node - y * sin_node * cos_i, x * sin_node + y * cos_node * cos_i, y * sin_i], axis=-1
+        )
+
+    speed = np.sqrt(mu / p)
+    position = in_plane(r * np.cos(u), r * np.sin(u))
+    velocity = in_plane(-speed * (np.sin(u) + e * np.sin(w)), speed * (np.cos(u) + e * np.cos(w)))
+    return position, velocity

@@ -1,0 +1,95 @@
+"""Frames of a spacecraft in orbit and rotations between them. Vectors are (3,) or (n, 3); frames are right-handed.
+
+RTN, the orbital frame: r_hat from the central body, t_hat = h_hat x r_hat, h_hat the osculating angular momentum.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def unit(vectors):
+    """Vectors of length one. vectors : (..., 3) -> (..., 3); a zero vector stays zero."""
+    vectors = np.asarray(vectors, dtype=float)
+    length = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+
+
+def rtn(position, velocity):
+    """Axes of the orbital frame. position m, velocity m/s : (..., 3) -> R_rtn_to_inertial (..., 3, 3), axes as columns.
+
+    Without angular momentum (a craft at rest, or falling straight down) the orbit has no plane: t_hat is then the
+    direction of increasing longitude and h_hat completes the frame towards the pole (x serves as longitude on the pole).
+    """
+    position, velocity = np.broadcast_arrays(np.asarray(position, float), np.asarray(velocity, float))
+    r_hat = unit(position)
+    h = np.cross(position, velocity)
+    scale = np.linalg.norm(position, axis=-1, keepdims=True) * np.linalg.norm(velocity, axis=-1, keepdims=True)
+    east = np.cross([0.0, 0.0, 1.0], r_hat)
+    east = np.where(np.linalg.norm(east, axis=-1, keepdims=True) > 1e-12, east, [0.0, 1.0, 0.0])
+    planeless = np.linalg.norm(h, axis=-1, keepdims=True) <= 1e-14 * scale
+    h_hat = unit(np.where(planeless, np.cross(r_hat, east), h))
+    return np.stack([r_hat, np.cross(h_hat, r_hat), h_hat], axis=-1)
+
+
+def to_frame(axes, vectors):
+    """Components of inertial vectors along the columns of axes. (..., 3, 3), (..., 3) -> (..., 3)."""
+    return np.einsum("...ji,...j->...i", axes, vectors)
+
+
+def from_frame(axes, components):
+    """Inertial vectors from components along the columns of axes. (..., 3, 3), (..., 3) -> (..., 3)."""
+    return np.einsum("...ij,...j->...i", axes, components)
+
+
+def body_axes(normal, hint):
+    """Frame of a sail: z along the normal, x as close to `hint` as possible. (n, 3), (n, 3) -> (n, 3, 3), columns."""
+    z = unit(normal)
+    x = hint - np.sum(hint * z, axis=-1, keepdims=True) * z
+    weak = np.linalg.norm(x, axis=-1, keepdims=True) < 1e-9
+    spare = np.where(np.abs(z[..., 2:3]) < 0.9, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])
+    x = unit(np.where(weak, np.cross(spare, z), x))
+    return np.stack([x, np.cross(z, x), z], axis=-1)
+
+
+def quaternion(axes):
+    """Unit quaternions (x, y, z, w) of rotation matrices, w >= 0. (..., 3, 3) -> (..., 4).
+
+    Shepperd's method (J. Guidance and Control 1, 1978): the largest of the four components is computed first.
+    """
+    m = np.asarray(axes, dtype=float)
+    xx, yy, zz = m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]
+    squares = np.stack([1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz, 1 + xx + yy + zz], axis=-1)
+    yx, xy = m[..., 1, 0], m[..., 0, 1]
+    zx, xz = m[..., 2, 0], m[..., 0, 2]
+    zy, yz = m[..., 2, 1], m[..., 1, 2]
+    table = np.stack(
+        [
+            np.stack([squares[..., 0], yx + xy, zx + xz, zy - yz], axis=-1),
+            np.stack([yx + xy, squares[..., 1], zy + yz, xz - zx], axis=-1),
+            np.stack([zx + xz, zy + yz, squares[..., 2], yx - xy], axis=-1),
+            np.stack([zy - yz, xz - zx, yx - xy, squares[..., 3]], axis=-1),
+        ],
+        axis=-2,
+    )
+    best = np.argmax(squares, axis=-1)
+    q = np.take_along_axis(table, best[..., None, None], axis=-2)[..., 0, :]
+    q = q / np.linalg.norm(q, axis=-1, keepdims=True)
+    return np.where(q[..., 3:4] < 0, -q, q)
+
+
+def pitch_cone_clock(axes, normal, thrust):
+    """Attitude angles, rad. axes (n, 3, 3) RTN columns, normal and thrust (n, 3) inertial -> pitch, cone, clock, each (n,).
+
+    Pitch is the angle from r_hat to the normal, cone the angle from r_hat to the thrust, clock the angle of the normal's
+    projection on the local horizon, from h_hat towards t_hat, in [0, 2 pi). Clock is 0 where the normal is radial, cone is 0
+    without thrust. Source: thesis, figures 3.1 and 3.2, as in (3.6)-(3.8).
+    """
+    n_r, n_t, n_h = np.moveaxis(to_frame(axes, normal), -1, 0)
+    a_r, a_t, a_h = np.moveaxis(to_frame(axes, thrust), -1, 0)
+    sideways = np.hypot(n_t, n_h)
+    pitch = np.arctan2(sideways, n_r)
+    cone = np.arctan2(np.hypot(a_t, a_h), a_r)
+    clock = np.where(sideways > 1e-12, np.mod(np.arctan2(n_t, n_h), 2 * np.pi), 0.0)
+    clock = np.where(clock > 2 * np.pi - 1e-12, 0.0, clock)  # a rounding error below zero is zero
+    return pitch, cone, clock

@@ -1,0 +1,136 @@
+"""What a simulation yields: arrays, and the setting that a picture of them needs. float64, SI, radians.
+
+A Run is whole or a block of consecutive rows of one; `join` puts blocks together. Nothing here computes or draws.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, fields, replace
+
+import numpy as np
+
+from sailviz.elements import Elements
+
+
+@dataclass(frozen=True)
+class Body:
+    """The central body. mu m3/s2, radius m (0 for a point)."""
+
+    name: str  # "Sun", "Earth" or the scene's own word
+    mu: float
+    radius: float
+
+
+@dataclass(frozen=True)
+class Craft:
+    """What flies, for its mesh and its labels. Lengths in m; None where the scene does not say."""
+
+    kind: str  # "solar-sail" | "electric-sail" | "plasma-brake" | "thruster" | "none"
+    label: str  # e.g. "Solar sail", "E-sail", "Plasma brake"
+    side: float | None = None  # of a square sail
+    tethers: int | None = None
+    tether_length: float | None = None
+
+
+@dataclass(frozen=True)
+class Reference:
+    """A curve that is there from the start: a target orbit, an initial orbit, a planet's orbit. points : (k, 3) m."""
+
+    name: str
+    role: str  # "target" | "initial" | "planet"
+    points: np.ndarray
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Everything about a run that is not a column of numbers."""
+
+    title: str
+    family: str  # "displaced" | "spirals" | "deorbit" | "wind" | "transfers"
+    about: str  # one or two sentences, Markdown
+    look_for: tuple[str, ...]  # what to watch, Markdown, one line each
+    thesis: str  # section of the thesis, "" where none applies
+    body: Body
+    craft: Craft
+    duration: float  # s, as asked for
+    rows: int  # rows the whole run will have if nothing stops it
+    epoch: np.datetime64 | None  # UTC label of t = 0, ns
+    references: tuple[Reference, ...]
+    parameters: tuple[tuple[str, str], ...]  # words and values for the description panel, e.g. ("pitch", "35.26 deg")
+    text: str  # the scene file, "" for a trajectory that came without one
+    resolved: dict  # every value of the scene, SI
+    versions: dict[str, str]
+    accuracy: str  # one sentence on how the numbers were made
+    identity: str  # hash of the resolved scene, hexadecimal
+    play_duration: float = 40.0  # s of wall time that a replay takes
+
+
+@dataclass(frozen=True)
+class Attitude:
+    """pitch, cone, clock (n,) rad; normal (n, 3) inertial unit vector: the sail normal away from the Sun, the thrust direction
+    of a thruster, or from tip to satellite along a tether; quaternion (n, 4) xyzw, body to inertial, body z = normal."""
+
+    pitch: np.ndarray
+    cone: np.ndarray
+    clock: np.ndarray
+    normal: np.ndarray
+    quaternion: np.ndarray
+
+
+@dataclass(frozen=True)
+class Thrust:
+    """acceleration (n, 3) m/s2 inertial, acceleration_rtn (n, 3), magnitude (n,), on (n,) bool."""
+
+    acceleration: np.ndarray
+    acceleration_rtn: np.ndarray
+    magnitude: np.ndarray
+    on: np.ndarray
+
+
+@dataclass(frozen=True)
+class Event:
+    """Something that happened at a time between the output rows. time s, state (7,) position m, velocity m/s, mass kg."""
+
+    name: str
+    time: float
+    state: np.ndarray
+
+
+@dataclass(frozen=True)
+class Run:
+    """A trajectory with everything that was acting on it. n rows."""
+
+    setting: Setting
+    first: int  # number of the first row in the whole run; 0 unless this is a later block
+    time: np.ndarray  # (n,) s since the start
+    position: np.ndarray  # (n, 3) m, inertial, from the central body
+    velocity: np.ndarray  # (n, 3) m/s
+    mass: np.ndarray  # (n,) kg; 1 where the scene gives no mass, so that forces are accelerations
+    attitude: Attitude
+    thrust: Thrust
+    elements: Elements
+    environment: dict[str, np.ndarray]  # name with unit -> (n,), e.g. "thrust_factor", "plasma_force_N_m"
+    bodies: dict[str, np.ndarray]  # name -> (n, 3) m from the central body, e.g. "Earth", or "Sun" seen from the Earth
+    events: tuple[Event, ...] = ()
+    ended: str = field(default="")  # why a run stopped before its duration, "" if it did not
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+
+def join(blocks: list[Run]) -> Run:
+    """One Run from consecutive blocks."""
+    if len(blocks) == 1:
+        return blocks[0]
+
+    def stack(parts):
+        if isinstance(parts[0], np.ndarray):
+            return np.concatenate(parts)
+        if isinstance(parts[0], dict):
+            return {key: stack([part[key] for part in parts]) for key in parts[0]}
+        return type(parts[0])(*(stack([getattr(p, f.name) for p in parts]) for f in fields(parts[0])))
+
+    columns = ("time", "position", "velocity", "mass", "attitude", "thrust", "elements", "environment", "bodies")
+    events = tuple(event for block in blocks for event in block.events)
+    joined = {name: stack([getattr(block, name) for block in blocks]) for name in columns}
+    return replace(blocks[0], events=events, ended=blocks[-1].ended, **joined)

@@ -1,0 +1,64 @@
+"""Rows of a Run: some of them, and the timelines they stand on.
+
+Everything that is drawn is thinned by the row's number in the whole run, never by its place in a block, so that a recording does
+not depend on the blocks in which the run arrived.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+
+import numpy as np
+import rerun as rr
+
+from sailviz.errors import RecordingError
+from sailviz.run import Run
+
+LONGEST = 2**63 / 1e9  # s that a timeline of 64-bit nanoseconds can count: 292 years
+
+
+def take(run: Run, index) -> Run:
+    """The rows `index` of a run: a slice or an array of ints into this block. `first` and `events` stay those of the block."""
+
+    def pick(part):
+        if isinstance(part, np.ndarray):
+            return part[index]
+        if isinstance(part, dict):
+            return {key: pick(value) for key, value in part.items()}
+        return type(part)(*(pick(getattr(part, f.name)) for f in fields(part)))
+
+    columns = ("time", "position", "velocity", "mass", "attitude", "thrust", "elements", "environment", "bodies")
+    return replace(run, **{name: pick(getattr(run, name)) for name in columns})
+
+
+def stride(rows: int, most: int) -> int:
+    """Every how many rows one is drawn, so that of `rows` at most `most` are."""
+    return max(1, -(-rows // most))
+
+
+def on_stride(run: Run, every: int) -> slice:
+    """The rows of a block whose number in the whole run is a multiple of `every`."""
+    return slice(-run.first % every, None, every)
+
+
+def check_duration(run: Run) -> None:
+    """Raise RecordingError where a time of the run does not fit a timeline."""
+    last = max(abs(run.setting.duration), abs(float(run.time[-1])) if len(run) else 0.0)
+    if last >= LONGEST:
+        raise RecordingError(
+            f"a recording counts nanoseconds in 64 bits and so can span 292 years, but this run spans {last / 31557600:.4g} years"
+        )
+    epoch = run.setting.epoch
+    if epoch is not None and int(epoch.astype("datetime64[ns]").astype(np.int64)) + last * 1e9 >= 2**63:
+        raise RecordingError(
+            f"the UTC timeline of a recording ends in the year 2262, but this run starts at {epoch} and goes beyond"
+        )
+
+
+def timelines(run_setting, number, time) -> list[rr.TimeColumn]:
+    """The columns step, sim_time and, where the scene has an epoch, utc. number (n,) int, time (n,) s."""
+    ns = np.round(np.asarray(time, float) * 1e9).astype(np.int64).astype("timedelta64[ns]")
+    columns = [rr.TimeColumn("step", sequence=np.asarray(number, np.int64)), rr.TimeColumn("sim_time", duration=ns)]
+    if run_setting.epoch is not None:
+        columns.append(rr.TimeColumn("utc", timestamp=run_setting.epoch.astype("datetime64[ns]") + ns))
+    return columns

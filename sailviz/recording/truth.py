@@ -1,0 +1,128 @@
+"""The numbers of a run as they are: float64, SI, radians, every row. This is the contract `sailviz/1`.
+
+/state        time_s, position_m (3), velocity_m_s (3), mass_kg
+/attitude     pitch_rad, cone_rad, clock_rad, normal (3), quaternion (xyzw, body to inertial)
+/thrust       acceleration_m_s2 (inertial, 3), acceleration_rtn_m_s2 (3), magnitude_m_s2, on (bool)
+/elements     semi_major_axis_m, eccentricity, inclination_rad, raan_rad, argument_rad, true_anomaly_rad
+/environment  whatever acted, the unit in each name; absent where nothing did
+/events       name, time_s, state (position m, velocity m/s, mass kg: 7), at the first row not before the event
+/scene        static: what the run was made from and how far it got
+
+Each is one archetype `sailviz.<Entity>` on the timelines step (the row's number), sim_time and, with an epoch, utc.
+"""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pyarrow as pa
+import rerun as rr
+
+from sailviz.run import Event, Run
+
+CONTRACT = "sailviz/1"
+
+
+def archetype(entity: str) -> str:
+    """Name of the archetype of an entity: /state -> sailviz.State."""
+    return "sailviz." + entity.strip("/").capitalize()
+
+
+def tables(run: Run) -> dict[str, dict[str, np.ndarray]]:
+    """The f64 columns of a run by entity and name, in the order of the contract. Arrays (n,) or (n, k)."""
+    attitude, thrust, elements = run.attitude, run.thrust, run.elements
+    return {
+        "/state": {
+            "time_s": run.time,
+            "position_m": run.position,
+            "velocity_m_s": run.velocity,
+            "mass_kg": run.mass,
+        },
+        "/attitude": {
+            "pitch_rad": attitude.pitch,
+            "cone_rad": attitude.cone,
+            "clock_rad": attitude.clock,
+            "normal": attitude.normal,
+            "quaternion": attitude.quaternion,
+        },
+        "/thrust": {
+            "acceleration_m_s2": thrust.acceleration,
+            "acceleration_rtn_m_s2": thrust.acceleration_rtn,
+            "magnitude_m_s2": thrust.magnitude,
+            "on": thrust.on,
+        },
+        "/elements": {
+            "semi_major_axis_m": elements.semi_major_axis,
+            "eccentricity": elements.eccentricity,
+            "inclination_rad": elements.inclination,
+            "raan_rad": elements.raan,
+            "argument_rad": elements.argument,
+            "true_anomaly_rad": elements.true_anomaly,
+        },
+        "/environment": dict(run.environment),
+    }
+
+
+def arrow_column(values) -> pa.Array:
+    """(n,) or (n, k) -> an Arrow column of n rows, f64, or bool where the values are."""
+    values = np.asarray(values)
+    values = np.ascontiguousarray(values, dtype=bool if values.dtype == bool else np.float64)
+    flat = pa.array(values.ravel())
+    return flat if values.ndim == 1 else pa.FixedSizeListArray.from_arrays(flat, values.shape[1])
+
+
+def columns(entity: str, table: dict):
+    """A table of numpy arrays as columns that a stream takes."""
+    return rr.DynamicArchetype.columns(
+        archetype=archetype(entity), components={name: arrow_column(values) for name, values in table.items()}
+    )
+
+
+def event_columns(events: list[Event]):
+    """The table of events as columns that a stream takes."""
+    return rr.DynamicArchetype.columns(
+        archetype=archetype("/events"),
+        components={
+            "name": pa.array([event.name for event in events]),
+            "time_s": arrow_column([event.time for event in events]),
+            "state": arrow_column(np.array([np.broadcast_to(event.state, 7) for event in events], float)),
+        },
+    )
+
+
+def scene(setting, *, rows: int, complete: bool, ended: str, layout: str) -> rr.DynamicArchetype:
+    """The static entity /scene. `layout` is the JSON from which the views were laid out."""
+    craft = setting.craft
+    sizes = {"craft_side_m": craft.side, "craft_tethers": craft.tethers, "craft_tether_length_m": craft.tether_length}
+    values = {
+        "contract": CONTRACT,
+        "title": setting.title,
+        "family": setting.family,
+        "text": setting.text,
+        "resolved": json.dumps(setting.resolved, sort_keys=True, default=plain),
+        "versions": json.dumps(setting.versions, sort_keys=True),
+        "accuracy": setting.accuracy,
+        "identity": setting.identity,
+        "body": setting.body.name,
+        "body_mu_m3_s2": float(setting.body.mu),
+        "body_radius_m": float(setting.body.radius),
+        "craft_kind": craft.kind,
+        **{name: float(size) for name, size in sizes.items() if size is not None},
+        "rows": int(rows),
+        "complete": bool(complete),
+        "ended": ended,
+        "layout": layout,
+    }
+    return rr.DynamicArchetype(
+        archetype("/scene"), components={name: pa.array([value]) for name, value in values.items()}
+    )
+
+
+def plain(value):
+    """What JSON has no word for, as something it has: arrays, dates, numpy numbers, dataclasses."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    if isinstance(value, np.generic):
+        return value.item() if not isinstance(value, np.datetime64) else str(value)
+    return str(value)

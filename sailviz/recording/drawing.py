@@ -1,15 +1,104 @@
+"""The picture of a run, put together: world, close-up, curves, words, and the blueprint that shows them.
+
+Whole groups of drawn rows are written as they come; what depends on how far the run reaches is written after the first block
+and, where that has changed, once more at the end. So neither memory nor the digest depends on the blocks.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from sailviz.recording import rows
+from sailviz.recording.about import about
+from sailviz.recording.blueprint import blueprint
+from sailviz.recording.closeup import close_up
+from sailviz.recording.layout import Extents, Layout, lay_out
+from sailviz.recording.pen import Pen
+from sailviz.recording.plots import Curves
+from sailviz.recording.samples import Frame, Samples
+from sailviz.recording.world import LADDER, STRIP, World
+from sailviz.run import Event, Run, Setting, join
+
+
 class Drawing:
-    def __init__(self, stream, setting):
-        self.stream = stream
+    """Writes everything that is for the eye."""
 
-    def add(self, block):
-        pass
+    def __init__(self, stream: rr.RecordingStream, setting: Setting):
+        self._stream, self._setting, self._pen = stream, setting, Pen(stream)
+        self._frame: Frame | None = None
+        self._extents = Extents()
+        self._waiting: Run | None = None  # drawn rows that do not fill a piece of trail yet
+        self._numbers = np.empty(0, int)
+        self._drawn = -1  # number of the last row drawn
+        self._layout: Layout | None = None
 
-    def add_events(self, events, index):
-        pass
+    def add(self, block: Run) -> None:
+        if self._frame is None:
+            self._begin(block)
+        self._extents.add(block)
+        self._curves.add(block)
+        self._add_ladder(block)
+        picked = rows.on_stride(block, self._frame.every)
+        self._wait(rows.take(block, picked), block.first + np.arange(len(block))[picked])
+        self._draw(len(self._numbers) // STRIP * STRIP)
+        if self._layout is None:
+            self._show()
 
-    def finish(self, last):
-        pass
+    def finish(self, last: Run) -> None:
+        """Draw what still waits and the last row of all, and size everything for good."""
+        if last.first not in (self._drawn, *self._numbers[-1:]):
+            self._wait(last, np.array([last.first]))
+        self._draw(len(self._numbers))
+        self._show()
 
-    def layout_json(self):
-        return "{}"
+    def add_events(self, events: list[Event], index) -> None:
+        texts = [event.name for event in events]
+        levels = [
+            rr.TextLogLevel.WARN if "interrupted" in text or " at t = " in text else rr.TextLogLevel.INFO
+            for text in texts
+        ]
+        self._pen.columns("/log", index, rr.TextLog.columns(text=texts, level=levels))
+
+    def layout_json(self) -> str:
+        return self._layout.to_json()
+
+    def _begin(self, block: Run) -> None:
+        self._frame = Frame.of(block)
+        self._world = World(self._pen, block, self._frame)
+        self._close_up = close_up(self._pen, block)
+        self._curves = Curves(self._pen, block, self._frame)
+        self._pen.static("/about", rr.TextDocument(about(self._setting), media_type=rr.MediaType.MARKDOWN))
+        start = rows.timelines(self._setting, [block.first], block.time[:1])
+        self._pen.columns("/log", start, rr.TextLog.columns(text=["start"], level=[rr.TextLogLevel.INFO]))
+
+    def _add_ladder(self, block: Run) -> None:
+        wanted = np.unique(np.arange(LADDER + 1) * (self._setting.rows - 1) // LADDER) - block.first
+        wanted = wanted[(wanted >= 0) & (wanted < len(block))]
+        self._world.add_ladder(Samples.of(rows.take(block, wanted), block.first + wanted, self._frame))
+
+    def _wait(self, run: Run, numbers) -> None:
+        if len(numbers):
+            self._waiting = run if self._waiting is None else join([self._waiting, run])
+            self._numbers = np.concatenate([self._numbers, numbers])
+
+    def _draw(self, count: int) -> None:
+        """Draw the first `count` of the rows that wait."""
+        if count == 0:
+            return
+        samples = Samples.of(rows.take(self._waiting, slice(0, count)), self._numbers[:count], self._frame)
+        self._world.add(samples)
+        self._close_up.add(samples)
+        self._drawn = int(self._numbers[count - 1])
+        self._numbers = self._numbers[count:]
+        self._waiting = rows.take(self._waiting, slice(count, None)) if len(self._numbers) else None
+
+    def _show(self) -> None:
+        """Size what depends on the run's reach, and lay out the views, unless both are as they were."""
+        layout = lay_out(self._setting, self._frame, self._extents, self._curves)
+        if layout == self._layout:
+            return
+        self._layout = layout
+        self._world.size(layout)
+        self._close_up.size(layout)
+        self._stream.send_blueprint(blueprint(layout), make_active=True, make_default=True)

@@ -69,6 +69,11 @@ class Recording:
         return tuple(sorted(name for name in names if not name.startswith("/__")))
 
     @property
+    def application_id(self) -> str:
+        """`sailviz_<family>`, or the name of the application that wrote the file."""
+        return self._reader.recordings()[0].application_id
+
+    @property
     def scene_text(self) -> str:
         """The scene file that was run, word for word."""
         return self._scene("text", "")

@@ -93,7 +93,10 @@ class Recorder:
         elif self._last is None:
             self._abandon()
         else:
-            self.finish(note=self._why(error), complete=False)
+            try:
+                self.finish(note=self._why(error), complete=False)
+            except Exception:
+                self._abandon()  # the first error is the one to tell
         return False
 
     def add(self, run: Run) -> None:

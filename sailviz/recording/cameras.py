@@ -1,0 +1,48 @@
+"""Where to look from. Found by trying directions, so that arrows are apart, nothing is edge-on and the Sun is where it helps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sailviz.frames import unit
+
+
+def directions(elevations, step: float = 10.0) -> np.ndarray:
+    """Unit vectors on a grid of azimuths every `step` degrees and the given elevations, deg, (n, 3)."""
+    azimuth, elevation = np.meshgrid(np.radians(np.arange(0, 360, step)), np.radians(elevations))
+    return np.stack(
+        [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)], -1
+    ).reshape(-1, 3)
+
+
+def apart(arrows, facing=None, elevations=(12, 20, 28, 36, 44)) -> np.ndarray:
+    """Direction from which arrows from the origin look long and well separated. arrows (k, 3) -> (3,) unit.
+
+    `facing` is the normal of a sail whose sunward side should be seen at a slant of about 70 degrees.
+    """
+    arrows = unit(np.asarray(arrows, float))
+    eyes = directions(elevations)
+    right = unit(np.cross([0.0, 0.0, 1.0], eyes))
+    up = np.cross(eyes, right)
+    flat = np.stack([right @ arrows.T, up @ arrows.T], -1)  # (eyes, arrows, 2)
+    length = np.linalg.norm(flat, axis=-1)
+    bearing = np.arctan2(flat[..., 1], flat[..., 0])
+    gaps = [
+        np.abs((bearing[:, i] - bearing[:, j] + np.pi) % (2 * np.pi) - np.pi)
+        for i in range(len(arrows))
+        for j in range(i)
+    ]
+    closest = np.min(gaps, axis=0) if gaps else 0.7
+    score = 1.2 * np.minimum(closest, 0.7) + 0.6 * length.min(1) + 0.25 * length.mean(1)
+    if facing is not None:
+        score = score + 1.2 * (1 - np.abs(-(eyes @ facing) - 0.36) / 0.36)
+    return eyes[np.argmax(score)]
+
+
+def over_planet(orbit_normal, sun=None) -> np.ndarray:
+    """Direction that sees an orbit as an open ellipse across its planet, the line between day and night, and some north."""
+    eyes = directions(np.arange(5, 50, 5), 5.0)
+    cost = np.abs(np.abs(eyes @ orbit_normal) - 0.45) + 0.6 * np.abs(eyes[:, 2] - 0.40)
+    if sun is not None:
+        cost = cost + np.abs(eyes @ sun - 0.40)
+    return eyes[np.argmin(cost)]

@@ -1,0 +1,223 @@
+"""The close-up: the craft in the orbital frame, with what acts on it and its angles. Units: a sail is 14 to 16 across.
+
+/sail has x from the central body, y transverse, z along the orbit normal; for a hanging tether x is transverse, y normal and
+z up, so that the planet is below. Arrows of thrust are as long as the root of the thrust, so that weak ones are still seen.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from sailviz.frames import body_axes, quaternion, unit
+from sailviz.recording import craft, look
+from sailviz.recording.layout import Layout
+from sailviz.recording.look import points
+from sailviz.recording.pen import Pen, f4
+from sailviz.recording.samples import Samples
+from sailviz.recording.world import draw_air, draw_planet, draw_stars
+from sailviz.run import Run
+
+SIZE = {"solar-sail": 15.0, "electric-sail": 9.0, "thruster": 8.0, "none": 1.0}
+NORMAL_LENGTH = {"solar-sail": 13.0, "electric-sail": 10.0, "thruster": 10.0}
+VELOCITY_LENGTH = 11.0
+PITCH_RADIUS = 6.0
+CONE_RADIUS = 4.4
+ARC = 25  # points of an arc
+TETHER = 12.0
+ARROWS = 14  # along a tether
+
+
+def close_up(pen: Pen, first: Run):
+    """The close-up that suits a craft."""
+    return TetherCloseUp(pen, first) if first.setting.craft.kind == "plasma-brake" else SailCloseUp(pen, first)
+
+
+class SailCloseUp:
+    """Writes /sail for everything that has an attitude: film, wheel or thruster."""
+
+    def __init__(self, pen: Pen, first: Run):
+        self._pen, self._kind = pen, first.setting.craft.kind
+        self._length = NORMAL_LENGTH.get(self._kind, 10.0)
+        pen.static("/sail", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+        draw_stars(pen, "/sail/stars", 900.0, 700)
+        craft.draw(pen, "/sail/body/shape", self._kind, near=True)
+        if self._kind == "thruster":
+            craft.plume(pen, "/sail/body/shape/plume")
+        pen.scale("/sail/body/shape", SIZE.get(self._kind, 9.0))
+        if first.setting.body.name == "Sun":
+            self._draw_flow()
+        pen.lines("/sail/radial", [[[0, 0, 0], [12, 0, 0]]], [130, 104, 44], look.WIDTH["helper"])
+        pen.arrow_style("/sail/normal", look.NORMAL, look.WIDTH["close arrow"])
+        pen.arrow_style("/sail/velocity", look.VELOCITY, look.WIDTH["close arrow"])
+        pen.arrow_style("/sail/force/arrow", look.THRUST, look.WIDTH["close thrust"])
+        pen.label_style("/sail/normal/name", look.NORMAL, "thrust axis" if self._kind == "thruster" else "normal")
+        pen.label_style("/sail/velocity/name", look.VELOCITY, "velocity")
+        pen.label_style("/sail/force/name", look.THRUST)
+        pen.strip_style("/sail/pitch/arc", look.PITCH, look.WIDTH["arc"])
+        corners = np.arange(1, ARC)
+        fan = np.stack([0 * corners, corners, corners + 1], 1).astype(np.uint32)
+        pen.static("/sail/pitch/fan", rr.Mesh3D.from_fields(triangle_indices=fan, albedo_factor=[*look.PITCH, 38]))
+        pen.label_style("/sail/pitch/name", look.PITCH)
+        pen.strip_style("/sail/cone", look.CONE, look.WIDTH["arc"])
+        pen.strip_style("/sail/clock/circle", look.CLOCK_CIRCLE, look.WIDTH["helper"])
+        pen.strip_style("/sail/clock/spokes", look.CLOCK_CIRCLE, look.WIDTH["helper"])
+        pen.strip_style("/sail/clock/arc", look.CLOCK, 1.8)
+        pen.label_style("/sail/clock/name", look.CLOCK)
+
+    def _draw_flow(self) -> None:
+        """What comes from the Sun: light, or the wind on an E-sail."""
+        wind = self._kind == "electric-sail"
+        color = look.WIND if wind else look.SUN
+        origins = [[-15, y, z] for y in (-6, 0, 6) for z in (-6, 0, 6)]
+        self._pen.static(
+            "/sail/flow",
+            rr.Arrows3D(
+                origins=origins,
+                vectors=[[4.2, 0, 0]] * len(origins),
+                colors=[look.dim(color, 0.6)],
+                radii=points(look.WIDTH["flow"]),
+            ),
+        )
+        self._pen.label("/sail/flow/name", "solar wind" if wind else "sunlight", color, (-13, 0, -7.2))
+
+    def add(self, samples: Samples) -> None:
+        pen, index, count = self._pen, samples.index, len(samples)
+        normal, velocity = samples.normal_rtn, samples.velocity_rtn
+        axes = body_axes(normal, np.tile([0.0, 1.0, 0.0], (count, 1)))
+        pen.move("/sail/body", index, quaternion=quaternion(axes))
+        pen.arrows("/sail/normal", index, self._length * normal)
+        pen.labels("/sail/normal/name", index, 1.06 * self._length * normal)
+        pen.arrows("/sail/velocity", index, VELOCITY_LENGTH * velocity)
+        pen.labels("/sail/velocity/name", index, 1.06 * VELOCITY_LENGTH * velocity)
+        self._add_force(samples)
+        self._add_angles(samples)
+
+    def _add_force(self, samples: Samples) -> None:
+        thrust, size = samples.thrust_rtn, samples.run.thrust.magnitude
+        root = np.sqrt(size)[:, None] * unit(thrust)
+        self._pen.arrows("/sail/force/arrow", samples.index, root)
+        texts = [f"thrust {acceleration_text(a)}" if a > 0 else "no thrust" for a in size.tolist()]
+        self._pen.labels("/sail/force/name", samples.index, 1.16 * root, texts)
+
+    def _add_angles(self, samples: Samples) -> None:
+        """Pitch as a fan from the radial direction to the normal, cone as an arc to the thrust, clock on the normal's circle."""
+        pen, index, count = self._pen, samples.index, len(samples)
+        attitude = samples.run.attitude
+        out = np.tile([1.0, 0.0, 0.0], (count, 1))
+        fan = PITCH_RADIUS * arcs(out, samples.normal_rtn)
+        pen.strips("/sail/pitch/arc", index, fan)
+        corners = np.concatenate([np.zeros((count, 1, 3)), fan], 1)
+        columns = rr.Mesh3D.columns(vertex_positions=f4(corners.reshape(-1, 3))).partition([ARC + 1] * count)
+        pen.columns("/sail/pitch/fan", index, columns)
+        pen.labels("/sail/pitch/name", index, 1.12 * fan[:, ARC // 3], angle_texts("pitch", attitude.pitch))
+        thrust = np.where(np.any(samples.thrust_rtn, 1, keepdims=True), unit(samples.thrust_rtn), out)
+        pen.strips("/sail/cone", index, CONE_RADIUS * arcs(out, thrust))
+        self._add_clock(samples, attitude.pitch, attitude.clock)
+
+    def _add_clock(self, samples: Samples, pitch, clock) -> None:
+        pen, index, length = self._pen, samples.index, self._length
+        axial, radius = length * np.cos(pitch), length * np.sin(pitch)
+
+        def on_circle(angle):  # (n, k) -> (n, k, 3); angle from the orbit normal towards the transverse direction
+            angle = np.asarray(angle)
+            x = np.broadcast_to(axial[:, None], angle.shape)
+            return np.stack([x, radius[:, None] * np.sin(angle), radius[:, None] * np.cos(angle)], -1)
+
+        full = np.tile(np.linspace(0, 2 * np.pi, 49), (len(samples), 1))
+        pen.strips("/sail/clock/circle", index, on_circle(full))
+        center = np.stack([axial, 0 * axial, 0 * axial], -1)[:, None]
+        ends = [on_circle(np.zeros((len(samples), 1))), center, on_circle(clock[:, None])]
+        pen.strips("/sail/clock/spokes", index, np.concatenate(ends, 1))
+        pen.strips("/sail/clock/arc", index, on_circle(clock[:, None] * np.linspace(0, 1, 37)))
+        # opposite the middle of the arc, the short way round: never on the normal's own label
+        short = np.where(clock > np.pi, clock - 2 * np.pi, clock)
+        place = on_circle((short / 2 + np.pi)[:, None])[:, 0]
+        pen.labels("/sail/clock/name", index, place, angle_texts("clock", clock))
+
+    def size(self, layout: Layout) -> None:
+        self._pen.scale("/sail/force", layout.close_thrust_scale)
+
+
+class TetherCloseUp:
+    """Writes /sail for a plasma brake: the satellite with its tether hanging over the planet and the drag along it."""
+
+    def __init__(self, pen: Pen, first: Run):
+        self._pen = pen
+        pen.static("/sail", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+        draw_stars(pen, "/sail/stars", 700.0, 700)
+        craft.draw(pen, "/sail/body/shape", "plasma-brake", near=True)
+        pen.scale("/sail/body/shape", 5.0)
+        craft.tether(pen, "/sail/body/tether", 0.06, 1.8, 0.04, near=True)
+        pen.scale("/sail/body/tether", TETHER)
+        if first.setting.body.radius > 0:
+            draw_planet(pen, "/sail/planet/shape", first.setting.body.name, dimmed=True)
+            draw_air(pen, "/sail/planet/shape/air")
+            pen.static("/sail/planet", rr.Transform3D(translation=[0.0, 0.0, -318.0]))
+            pen.scale("/sail/planet/shape", 300.0)
+        pen.arrow_style("/sail/force/arrows", look.THRUST, 1.3)
+        pen.label_style("/sail/force_name", look.THRUST)
+        pen.arrow_style("/sail/velocity", look.VELOCITY, 1.8)
+        pen.label_style("/sail/velocity/name", look.VELOCITY, "velocity")
+        pen.arrow_style("/sail/flow", look.dim(look.WIND, 0.6), 0.9)
+        pen.label("/sail/flow_name", "ion ram flow", look.WIND, (8.4, 0, -2.3))
+        pen.label("/sail/tip_name", tether_text(first.setting.craft), look.BUS, (0, 0, -1.04 * TETHER))
+
+    def add(self, samples: Samples) -> None:
+        pen, index, count = self._pen, samples.index, len(samples)
+        velocity, thrust, normal = (turned(v) for v in (samples.velocity_rtn, samples.thrust_rtn, samples.normal_rtn))
+        axes = body_axes(normal, np.tile([0.0, 1.0, 0.0], (count, 1)))
+        axes = axes[..., [1, 0, 2]] * [-1.0, 1.0, 1.0]  # panels across the flight direction
+        pen.move("/sail/body", index, quaternion=quaternion(axes))
+        pen.arrows("/sail/velocity", index, 8.0 * velocity)
+        pen.labels("/sail/velocity/name", index, 8.6 * velocity)
+        size = samples.run.thrust.magnitude
+        # uniform along the tether, since the run knows the whole force only
+        root = (np.sqrt(size)[:, None] * unit(thrust))[:, None, :]
+        down = -(0.10 + 0.85 * np.linspace(0, 1, ARROWS))[None, :, None] * TETHER * normal[:, None, :]
+        self._add_many("/sail/force/arrows", index, np.broadcast_to(root, (count, ARROWS, 3)), down)
+        texts = [f"drag {acceleration_text(a)}" if a > 0 else "no drag" for a in size.tolist()]
+        pen.labels("/sail/force_name", index, 0.5 * TETHER * -normal + 7.2 * unit(thrust), texts)
+        origins = 9.0 * velocity[:, None, :] + np.array([[0, y, z] for y in (-1.5, 1.5) for z in (-3, -5.5, -8, -10.5)])
+        self._add_many("/sail/flow", index, np.broadcast_to(-3.4 * velocity[:, None, :], origins.shape), origins)
+
+    def _add_many(self, path: str, index, vectors, origins=None) -> None:
+        """vectors, origins (n, k, 3): k arrows a row."""
+        more = {} if origins is None else {"origins": f4(origins.reshape(-1, 3))}
+        columns = rr.Arrows3D.columns(vectors=f4(vectors.reshape(-1, 3)), **more)
+        self._pen.columns(path, index, columns.partition([vectors.shape[1]] * len(vectors)))
+
+    def size(self, layout: Layout) -> None:
+        pass
+
+
+def turned(rtn):
+    """Orbital frame (radial, transverse, normal) -> (transverse, normal, radial): up is away from the planet."""
+    return rtn[:, [1, 2, 0]]
+
+
+def arcs(start, end) -> np.ndarray:
+    """Great-circle arcs between unit vectors, (n, 3), (n, 3) -> (n, ARC, 3)."""
+    across = end - np.sum(start * end, 1, keepdims=True) * start
+    angle = np.arctan2(np.linalg.norm(across, axis=1), np.sum(start * end, 1))
+    share = np.linspace(0, 1, ARC) * angle[:, None]
+    return np.cos(share)[..., None] * start[:, None] + np.sin(share)[..., None] * unit(across)[:, None]
+
+
+def angle_texts(name: str, angle) -> list[str]:
+    """pitch 35°: whole degrees, never -0, never 360."""
+    return [f"{name} {round(value) % 360}°" for value in np.degrees(angle).tolist()]
+
+
+def acceleration_text(a: float) -> str:
+    for size, name in ((1e-3, "mm/s²"), (1e-6, "µm/s²"), (1e-9, "nm/s²")):
+        if a >= 0.0995 * size:
+            return f"{a / size:.3g} {name}"
+    return f"{a:.1e} m/s²"
+
+
+def tether_text(craft) -> str:
+    length = craft.tether_length
+    if not length:
+        return "tip mass"
+    return f"tip, {length / 1e3:g} km down" if length >= 1e4 else f"tip, {length:g} m down"

@@ -1,0 +1,298 @@
+"""What the views need to know about a run, once it is known how far it reaches: a handful of numbers and words.
+
+A layout is plain data. It travels in the recording as JSON (/scene, `layout`), so that a picture of another tab or without
+panels can be laid out afresh from the file alone.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, replace
+
+import numpy as np
+
+from sailviz.frames import unit
+from sailviz.recording import cameras, look, rows
+from sailviz.recording.plots import Curves, nice_range
+from sailviz.recording.samples import Frame, Samples
+from sailviz.run import Run, Setting
+
+DEPARTING = 0.02  # relative change of distance below which an orbit counts as closed
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Where a view looks from. `origin` is the entity whose frame position, target and up are given in."""
+
+    name: str
+    origin: str
+    position: tuple[float, ...]
+    target: tuple[float, ...] = (0.0, 0.0, 0.0)
+    up: tuple[float, ...] = (0.0, 0.0, 1.0)
+
+
+@dataclass(frozen=True)
+class PlotView:
+    title: str
+    paths: tuple[str, ...]
+    low: float
+    high: float
+    legend: str = ""  # corner, "" for none
+    share: float = 2.4
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Everything from which a blueprint is made."""
+
+    sun: bool
+    scene_radius: float  # S, view units
+    sail_size: float  # view units: side of a sail, radius of an E-sail, height of a satellite
+    tether_size: float  # view units, of a plasma brake
+    thrust_scale: float  # view units per m/s2
+    close_thrust_scale: float  # of the close-up, per sqrt(m/s2)
+    cameras: tuple[Camera, ...]
+    close_up: Camera
+    plots: tuple[PlotView, ...]
+    environment: tuple[PlotView, ...]
+    lanes: tuple[str, ...]
+    hidden: tuple[str, ...]  # entities that the system view leaves out
+    tail: float  # s of the bright part of the trail
+    past: float  # s of the trail, 0 for all of it
+    future: bool
+    sparse: bool
+    timeline: str
+    timelines: tuple[str, ...]
+    speed: float  # seconds of the run in one second of replay
+    rows_per_second: float
+
+    def to_json(self) -> str:
+        return json.dumps(asdict(self), sort_keys=True)
+
+    @staticmethod
+    def from_json(text: str) -> Layout:
+        values = json.loads(text)
+
+        def tuples(value):
+            return tuple(map(tuples, value)) if isinstance(value, list) else value
+
+        values = {name: tuples(value) for name, value in values.items()}
+        values["cameras"] = tuple(Camera(**{k: tuples(v) for k, v in c.items()}) for c in values["cameras"])
+        values["close_up"] = Camera(**{k: tuples(v) for k, v in values["close_up"].items()})
+        for name in ("plots", "environment"):
+            values[name] = tuple(PlotView(**{k: tuples(v) for k, v in plot.items()}) for plot in values[name])
+        return Layout(**values)
+
+
+class Extents:
+    """How far a run reaches, gathered block by block over all rows."""
+
+    def __init__(self):
+        self.farthest = self.nearest = None  # m
+        self.highest = 0.0  # m above or below the plane x, y
+        self.thrust = 0.0  # m/s2
+        self.middle: Run | None = None  # the row in the middle of the run, or the last before it
+        self.bodies: dict[str, float] = {}  # farthest distance of each, m
+
+    def add(self, run: Run) -> None:
+        distance = np.linalg.norm(run.position, axis=1)
+        low, high = float(distance.min()), float(distance.max())
+        self.farthest = high if self.farthest is None else max(self.farthest, high)
+        self.nearest = low if self.nearest is None else min(self.nearest, low)
+        self.highest = max(self.highest, float(np.abs(run.position[:, 2]).max()))
+        self.thrust = max(self.thrust, float(run.thrust.magnitude.max()))
+        for name, position in run.bodies.items():
+            self.bodies[name] = max(self.bodies.get(name, 0.0), float(np.linalg.norm(position, axis=1).max()))
+        wanted = min(max(run.setting.rows // 2 - run.first, 0), len(run) - 1)
+        if self.middle is None or run.first <= run.setting.rows // 2:
+            self.middle = replace(rows.take(run, slice(wanted, wanted + 1)), first=run.first + wanted)
+
+
+def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) -> Layout:
+    """The layout of a run that reaches as far as `extents` says."""
+    references = [float(np.linalg.norm(r.points, axis=1).max()) for r in setting.references if r.role != "planet"]
+    radius = max([extents.farthest, *references]) / frame.unit
+    middle = Samples.of(extents.middle, np.array([extents.middle.first]), frame)
+    hidden = [
+        name for name, far in planets(setting, extents).items() if far / frame.unit > look.PLANETS_WITHIN * radius
+    ]
+    sail = look.SAIL.get(setting.craft.kind, 0.1) * radius
+    tether = 0.0
+    if not frame.sun and setting.body.radius > 0:
+        sail = 0.14 * radius if setting.craft.kind == "plasma-brake" else sail
+        tether = min(0.13 * radius, max(0.9 * (extents.nearest / frame.unit - 1), 0.01))
+    revolution = revolution_time(extents.middle)
+    turns = setting.duration / revolution
+    still = extents.farthest - extents.nearest < DEPARTING * extents.farthest
+    closed = bool(still and turns > 1.2 and not frame.sparse)
+    if frame.sun or setting.body.radius == 0:
+        views, tail = (
+            about_sun(radius, extents.highest / frame.unit, setting),
+            min(0.12 * setting.duration, 0.15 * revolution),
+        )
+    else:
+        views, tail = about_planet(radius, middle, setting, frame), min(2.6 * revolution, 0.3 * setting.duration)
+    names = name_views(views, setting, frame, sail, tether)
+    timelines = ("sim_time", "step") if setting.epoch is None else ("utc", "sim_time", "step")
+    shown, environment = plot_views(curves, frame)
+    return Layout(
+        sun=frame.sun,
+        scene_radius=radius,
+        sail_size=sail,
+        tether_size=tether,
+        thrust_scale=look.THRUST_LENGTH * radius / extents.thrust if extents.thrust > 0 else 1.0,
+        close_thrust_scale=8.0 / np.sqrt(extents.thrust) if extents.thrust > 0 else 1.0,
+        cameras=names,
+        close_up=close_up_camera(setting, middle),
+        plots=shown,
+        environment=environment,
+        lanes=tuple(lane for lane, changes in curves.changes.items() if changes),
+        hidden=tuple(hidden),
+        tail=tail,
+        past=0.86 * revolution if closed else 0.0,
+        future=not closed,
+        sparse=frame.sparse,
+        timeline=timelines[0],
+        timelines=timelines,
+        speed=setting.duration / setting.play_duration,
+        rows_per_second=setting.rows / setting.duration,
+    )
+
+
+def planets(setting: Setting, extents: Extents) -> dict[str, float]:
+    """Farthest distances, m, of the planets that move or whose orbits are drawn."""
+    far = {r.name: float(np.linalg.norm(r.points, axis=1).max()) for r in setting.references if r.role == "planet"}
+    return far | {name: max(distance, far.get(name, 0.0)) for name, distance in extents.bodies.items() if name != "Sun"}
+
+
+def revolution_time(row: Run) -> float:
+    """s that the craft would take to go round at its angular speed in one row; the duration where it hardly moves."""
+    position, velocity = row.position[0], row.velocity[0]
+    rate = np.linalg.norm(np.cross(position, velocity)) / np.dot(position, position)
+    return float(min(2 * np.pi / rate, 20 * row.setting.duration)) if rate > 0 else row.setting.duration
+
+
+def about_sun(radius: float, height: float, setting: Setting) -> list[Camera]:
+    """Cameras of a scene round the Sun: from outside, from the pole, along with the craft."""
+    lifted = height > 0.12 * radius
+    outside = np.array([0.25, -1.95, 0.88] if lifted else [0.1, -1.66, 1.05]) * radius
+    sail = setting.craft.kind == "solar-sail"
+    follow = np.array([-0.42, 0.50, 0.26] if sail else [0.30, -0.62, 0.26]) * radius
+    return [
+        Camera("System", "/", tuple(outside.tolist()), (0.0, 0.0, 0.02 * radius)),
+        Camera("From the pole", "/", (0.0, -0.01 * radius, 2.3 * radius)),
+        Camera("Follow", "/world/rtn", tuple(follow.tolist()), (-0.12 * radius, 0.0, 0.0)),
+    ]
+
+
+def about_planet(radius: float, middle: Samples, setting: Setting, frame: Frame) -> list[Camera]:
+    """Cameras of a scene round a planet: over it, along with the craft, along the orbit's pole."""
+    sun = middle.run.bodies.get("Sun")
+    pole = middle.axes[0, :, 2]
+    eye = cameras.over_planet(pole, None if sun is None else unit(sun[0])) * 2.5 * radius
+    above = pole if pole[2] >= 0 else -pole
+    above = unit(above + 0.05 * middle.axes[0, :, 0]) * 2.6 * radius
+    return [
+        Camera(setting.body.name, "/", tuple(eye.tolist())),
+        Camera("Follow", "/world/rtn", (0.30, -0.52, 0.24), (-0.06, 0.16, 0.0), (1.0, 0.0, 0.0)),
+        Camera("Orbit pole", "/", tuple(above.tolist())),
+    ]
+
+
+def close_up_camera(setting: Setting, middle: Samples) -> Camera:
+    """The camera of the close-up: arrows apart, the sunlit side of a film in sight."""
+    if setting.craft.kind == "plasma-brake":
+        return Camera("Tether close-up (orbital frame, not to scale)", "/sail", (5.0, -23.0, 3.5), (0.0, 0.0, -5.0))
+    normal, thrust, velocity = middle.normal_rtn[0], middle.thrust_rtn[0], middle.velocity_rtn[0]
+    arrows = [np.array([1.0, 0.0, 0.0]), velocity]
+    for arrow in (normal, unit(thrust)):
+        if all(np.linalg.norm(arrow - other) > 0.05 for other in arrows) and np.linalg.norm(arrow) > 0.5:
+            arrows.append(arrow)
+    film = setting.craft.kind == "solar-sail"
+    eye = cameras.apart(arrows, facing=normal if film else None, elevations=(20, 28, 36))
+    name = "Thruster close-up" if setting.craft.kind == "thruster" else f"{setting.craft.label or 'Craft'} close-up"
+    return Camera(f"{name} (orbital frame)", "/sail", tuple((27.0 * eye).tolist()), (1.0, 0.0, 0.0))
+
+
+def name_views(views: list[Camera], setting: Setting, frame: Frame, sail: float, tether: float) -> tuple[Camera, ...]:
+    """Say in the first view's name what is not to scale and what is slowed."""
+    craft, notes = setting.craft, []
+    sizes = {
+        "solar-sail": (sail, craft.side),
+        "electric-sail": (sail, craft.tether_length),
+        "plasma-brake": (tether, craft.tether_length),
+    }
+    drawn, true = sizes.get(craft.kind, (0.0, None))
+    if true and drawn:
+        notes.append(
+            f"{(craft.label or 'craft').lower() if craft.kind != 'electric-sail' else 'E-sail'} ×{in_words(drawn * frame.unit / true)}"
+        )
+    if frame.sparse and frame.slowed > 1.5:
+        notes.append(f"orbiting slowed {in_words(frame.slowed)} times")
+    name = views[0].name + (f" ({', '.join(notes)})" if notes else "")
+    return (replace(views[0], name=name), *views[1:])
+
+
+def in_words(factor: float) -> str:
+    """1234567 -> 1.2 million; two digits are enough for an exaggeration."""
+    for size, word in ((1e9, " billion"), (1e6, " million"), (1e3, ",000")):
+        if factor >= size:
+            value = float(f"{factor / size:.2g}")
+            if word == ",000" and value != int(value):
+                return f"{int(value * 1000):,}"
+            return f"{value:.10g}{word}"
+    return f"{float(f'{factor:.2g}'):.10g}"
+
+
+def plot_views(curves: Curves, frame: Frame) -> tuple[tuple[PlotView, ...], tuple[PlotView, ...]]:
+    """Which curves are shown, in which ranges: first the four that every run has, then what the environment did."""
+    known = {plot.path: plot for plot in curves.plots}
+
+    def view(path: str, **more) -> PlotView:
+        plot = known[path]
+        low, high = curves.reach(path)
+        low, high = nice_range(low, high, plot.from_zero)
+        legend = "RightTop" if len(plot.names) > 1 else ""
+        return PlotView(**{"title": plot.title, "paths": (path,), "low": low, "high": high, "legend": legend} | more)
+
+    shown = []
+    if "/plots/distance" in known:
+        r_low, r_high = curves.ranges["/plots/distance:0"]
+        a_low, a_high = curves.ranges.get("/plots/distance:1", (r_low, r_high))
+        # the semi-major axis of an orbit close to escape is beyond all measure: it may leave the range
+        low, high = nice_range(max(min(r_low, a_low), 0.5 * r_low), min(max(r_high, a_high), 1.5 * r_high))
+        shown.append(view("/plots/distance", low=low, high=high, share=3.0))
+    else:
+        shown.append(view("/plots/altitude", share=3.0))
+    tilt = curves.reach("/plots/inclination")
+    tilted = tilt[1] > 0.05 and (frame.sun or tilt[1] - tilt[0] > 0.05)
+    shown.append(view("/plots/inclination" if tilted else "/plots/eccentricity"))
+    shown += angle_views(curves, view)
+    shown.append(view("/plots/thrust"))
+    base = {
+        "/plots/distance",
+        "/plots/altitude",
+        "/plots/inclination",
+        "/plots/eccentricity",
+        "/plots/angles",
+        "/plots/clock",
+        "/plots/thrust",
+    }
+    environment = tuple(view(path) for path in known if path not in base)
+    return tuple(shown), environment
+
+
+def angle_views(curves: Curves, view) -> list[PlotView]:
+    """Pitch, cone and clock in one plot where their sizes allow it; a constant clock angle goes into the title."""
+    pitch, clock = curves.reach("/plots/angles"), curves.reach("/plots/clock")
+    if clock[1] - clock[0] < 0.5:
+        title = f"Pitch and cone angle [deg], clock {abs(round(0.5 * (clock[0] + clock[1]), 1)):.4g}"
+        return [view("/plots/angles", title=title, share=3.0)]
+    low, high = min(pitch[0], clock[0]), max(pitch[1], clock[1])
+    if high - low < 3 * max(pitch[1] - pitch[0], 30):
+        low, high = nice_range(low, high)
+        paths = ("/plots/angles", "/plots/clock")
+        return [
+            view("/plots/angles", title="Pitch, cone and clock angle [deg]", paths=paths, low=low, high=high, share=3.0)
+        ]
+    return [view("/plots/angles"), view("/plots/clock", share=2.0)]

@@ -1,0 +1,84 @@
+"""The few ways in which the picture is written: what never moves, and columns of what does. float32, view units."""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from sailviz.recording.look import ANCHOR, points
+from sailviz.recording.meshes import Mesh
+
+
+def f4(values) -> np.ndarray:
+    return np.ascontiguousarray(values, dtype=np.float32)
+
+
+class Pen:
+    """Writes to a stream. Style is static, data have rows: of one component of one entity the static value would hide the rows."""
+
+    def __init__(self, stream: rr.RecordingStream):
+        self._stream = stream
+
+    def static(self, path: str, *what) -> None:
+        self._stream.log(path, *what, static=True)
+
+    def columns(self, path: str, index, columns) -> None:
+        self._stream.send_columns(path, index, columns)
+
+    def mesh(self, path: str, mesh: Mesh, color, shaded: bool = True, side: str | None = None) -> None:
+        """A mesh of one colour; `side` "front" or "back" draws only that one. Unshaded is flat: for what glows, or is air."""
+        more = {"vertex_normals": f4(mesh.normals)} if shaded else {}
+        if side:
+            more["face_rendering"] = side
+        faces = np.ascontiguousarray(mesh.faces, np.uint32)
+        self.static(
+            path,
+            rr.Mesh3D(vertex_positions=f4(mesh.vertices), triangle_indices=faces, albedo_factor=list(color), **more),
+        )
+
+    def lines(self, path: str, strips, color, width: float) -> None:
+        self.static(path, rr.LineStrips3D([f4(strip) for strip in strips], colors=[list(color)], radii=points(width)))
+
+    def scale(self, path: str, factor) -> None:
+        """How large everything below `path` is drawn. factor : float or (3,)."""
+        factor = np.broadcast_to(np.asarray(factor, float), 3)
+        self.static(path, rr.Transform3D(scale=f4(factor)))
+
+    def move(self, path: str, index, *, translation=None, quaternion=None) -> None:
+        """translation (n, 3), quaternion (n, 4) xyzw."""
+        given = {"translation": translation, "quaternion": quaternion}
+        values = {name: f4(value) for name, value in given.items() if value is not None}
+        self.columns(path, index, rr.Transform3D.columns(**values))
+
+    def arrow_style(self, path: str, color, width: float) -> None:
+        self.static(path, rr.Arrows3D.from_fields(colors=[list(color)], radii=points(width)))
+
+    def arrows(self, path: str, index, vectors, origins=None) -> None:
+        """vectors (n, 3), origins (n, 3): one arrow a row."""
+        more = {} if origins is None else {"origins": f4(origins)}
+        self.columns(path, index, rr.Arrows3D.columns(vectors=f4(vectors), **more))
+
+    def strip_style(self, path: str, color, width: float) -> None:
+        more = {} if color is None else {"colors": [list(color)]}
+        self.static(path, rr.LineStrips3D.from_fields(radii=points(width), **more))
+
+    def strips(self, path: str, index, strips, colors=None) -> None:
+        """strips (n, k, 3): one line of k points a row; colors (n,) 0xRRGGBBAA."""
+        more = {} if colors is None else {"colors": np.asarray(colors, np.uint32)}
+        self.columns(path, index, rr.LineStrips3D.columns(strips=f4(strips), **more))
+
+    def label(self, path: str, text: str, color, position=(0.0, 0.0, 0.0)) -> None:
+        """A text that stays where it is in its parent's frame. It hangs below its point."""
+        self.static(
+            path,
+            rr.Points3D([f4(position)], radii=points(ANCHOR), colors=[list(color)], labels=[text], show_labels=True),
+        )
+
+    def label_style(self, path: str, color, text: str | None = None) -> None:
+        more = {} if text is None else {"labels": [text]}
+        self.static(path, rr.Points3D.from_fields(radii=points(ANCHOR), colors=[list(color)], show_labels=True, **more))
+
+    def labels(self, path: str, index, positions, texts=None) -> None:
+        """positions (n, 3), texts (n): one label a row."""
+        more = {} if texts is None else {"labels": list(texts)}
+        self.columns(path, index, rr.Points3D.columns(positions=f4(positions), **more))

@@ -1,0 +1,245 @@
+"""Curves for people, in people's units, under /plots; on and off as coloured lanes under /phase.
+
+At most PLOT_ROWS rows are drawn, evenly spaced by their number in the run; the numbers of every row are in the truth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import rerun as rr
+
+from sailviz.recording import look, rows
+from sailviz.recording.samples import Frame
+from sailviz.run import Run
+
+PLOT_ROWS = 20_000
+
+
+@dataclass(frozen=True)
+class Plot:
+    """One view of curves. `values` gives (n, k) of a run, one column a name."""
+
+    path: str
+    title: str
+    names: tuple[str, ...]
+    colors: tuple
+    values: Callable[[Run], np.ndarray]
+    from_zero: bool = False
+
+
+UNITS = {  # ending of a name -> factor and unit on the plot; the longest that fits counts
+    "_rad": (180 / np.pi, "deg"),
+    "_deg": (1.0, "deg"),
+    "_N_m": (1e9, "nN/m"),
+    "_N": (1e3, "mN"),
+    "_Pa": (1e9, "nPa"),
+    "_V": (1.0, "V"),
+    "_kV": (1.0, "kV"),
+    "_A": (1e3, "mA"),
+    "_W": (1.0, "W"),
+    "_W_m2": (1.0, "W/m²"),
+    "_K": (1.0, "K"),
+    "_eV": (1.0, "eV"),
+    "_m": (1e-3, "km"),
+    "_km": (1.0, "km"),
+    "_m_s": (1e-3, "km/s"),
+    "_m_s2": (1e3, "mm/s²"),
+    "_T": (1e9, "nT"),
+    "_s": (1.0, "s"),
+}
+LOGARITHMIC = {"_m3": "1/m³", "_1_m3": "1/m³", "_m_3": "1/m³", "_kg_m3": "kg/m³", "_per_m3": "1/m³"}
+
+
+def degrees(*columns) -> np.ndarray:
+    return np.degrees(np.stack(columns, 1))
+
+
+def plots_of(first: Run, frame: Frame) -> list[Plot]:
+    """All curves that are written of a run; the layout shows those that say something."""
+    body = first.setting.body
+    plots = []
+    if frame.sun or body.radius == 0:
+        unit, name = frame.unit, frame.unit_name
+        plots.append(
+            Plot(
+                "/plots/distance",
+                f"Distance r and semi-major axis a [{name}]",
+                ("r", "a"),
+                look.SERIES[:2],
+                lambda run: np.stack([np.linalg.norm(run.position, axis=1), run.elements.semi_major_axis], 1) / unit,
+            )
+        )
+    else:
+        plots.append(
+            Plot(
+                "/plots/altitude",
+                "Altitude [km]: h above the surface, a mean over the orbit",
+                ("h", "a"),
+                look.SERIES[:2],
+                lambda run: (
+                    np.stack(
+                        [
+                            np.linalg.norm(run.position, axis=1) - body.radius,
+                            run.elements.semi_major_axis - body.radius,
+                        ],
+                        1,
+                    )
+                    / 1e3
+                ),
+            )
+        )
+    thrust_unit, thrust_name = thrust_units(first)
+    plots += [
+        Plot(
+            "/plots/inclination",
+            "Inclination [deg]",
+            ("i",),
+            look.SERIES[2:3],
+            lambda run: degrees(run.elements.inclination),
+        ),
+        Plot(
+            "/plots/eccentricity",
+            "Eccentricity",
+            ("e",),
+            look.SERIES[3:4],
+            lambda run: run.elements.eccentricity[:, None],
+        ),
+        Plot(
+            "/plots/angles",
+            "Pitch and cone angle [deg]",
+            ("pitch", "cone"),
+            (look.PITCH, look.CONE),
+            lambda run: degrees(run.attitude.pitch, run.attitude.cone),
+        ),
+        Plot("/plots/clock", "Clock angle [deg]", ("clock",), (look.CLOCK,), lambda run: degrees(run.attitude.clock)),
+        Plot(
+            "/plots/thrust",
+            f"Thrust acceleration [{thrust_name}]",
+            ("thrust",),
+            (look.THRUST,),
+            lambda run: thrust_unit * run.thrust.magnitude[:, None],
+            from_zero=True,
+        ),
+    ]
+    names = [name for name, values in first.environment.items() if values.dtype != bool]
+    return plots + [environment_plot(name, look.SERIES[(4 + k) % 5]) for k, name in enumerate(names)]
+
+
+def thrust_units(first: Run) -> tuple[float, str]:
+    """The unit in which the first row's thrust is a handy number: the factor from m/s2, and its name."""
+    size = float(first.thrust.magnitude[0])
+    if size == 0 or size >= 1e-5:
+        return 1e3, "mm/s²"
+    return (1e6, "µm/s²") if size >= 1e-8 else (1e9, "nm/s²")
+
+
+def environment_plot(name: str, color) -> Plot:
+    """A column of the environment: its title from its name, its unit from the name's ending, densities as logarithms."""
+    ending = max((u for u in (*UNITS, *LOGARITHMIC) if name.endswith(u)), key=len, default="")
+    words = name.removesuffix(ending).replace("_", " ")
+    words = words[:1].upper() + words[1:]
+    if ending in LOGARITHMIC:
+
+        def values(run):
+            with np.errstate(divide="ignore", invalid="ignore"):
+                return np.log10(run.environment[name])[:, None]
+
+        title = f"{words} [log10 {LOGARITHMIC[ending]}]"
+        return Plot(f"/plots/{name}", title, (words.lower(),), (color,), values)
+    factor, unit = UNITS.get(ending, (1.0, ""))
+    title = f"{words} [{unit}]" if unit else words
+    return Plot(
+        f"/plots/{name}", title, (words.lower(),), (color,), lambda run: factor * run.environment[name][:, None]
+    )
+
+
+class Curves:
+    """Writes the plots of a run and remembers how far they reach."""
+
+    def __init__(self, pen, first: Run, frame: Frame):
+        self._pen = pen
+        self._every = rows.stride(first.setting.rows, PLOT_ROWS)
+        self.plots = plots_of(first, frame)
+        self.ranges: dict[str, tuple[float, float]] = {}
+        self._lanes = {"thrust": lambda run: run.thrust.on} | {
+            name: (lambda run, name=name: run.environment[name])
+            for name, v in first.environment.items()
+            if v.dtype == bool
+        }
+        self._state: dict[str, bool] = {}
+        self.changes = dict.fromkeys(self._lanes, 0)
+        dense = frame.turns > 60
+        width = look.WIDTH["dense plot" if dense else "plot"]
+        for plot in self.plots:
+            widths = [width] * len(plot.names)
+            style = rr.SeriesLines(names=list(plot.names), colors=[list(c) for c in plot.colors], widths=widths)
+            pen.static(plot.path, style)
+        for lane in self._lanes:
+            on, off = look.LANES.get(
+                lane,
+                look.LANES["light"]
+                if "sunlit" in lane
+                else {"on": (lane, look.SERIES[0]), "off": (f"no {lane}", look.REFERENCE)},
+            ).values()
+            pen.static(
+                f"/phase/{lane}",
+                rr.StateConfiguration(values=["on", "off"], labels=[on[0], off[0]], colors=[on[1], off[1]]),
+            )
+
+    def add(self, run: Run) -> None:
+        """A block of a run, all rows."""
+        drawn = rows.on_stride(run, self._every)
+        picked = rows.take(run, drawn)
+        index = rows.timelines(run.setting, run.first + np.arange(len(run))[drawn], picked.time)
+        for plot in self.plots:
+            self._stretch(plot.path, plot.values(run))
+            if len(picked):
+                values = plot.values(picked)
+                self._pen.columns(
+                    plot.path, index, rr.Scalars.columns(scalars=np.where(np.isfinite(values), values, np.nan))
+                )
+        for lane, values in self._lanes.items():
+            self._add_lane(lane, run, np.asarray(values(run), bool))
+
+    def _stretch(self, path: str, values) -> None:
+        for k in range(values.shape[1]):
+            finite = values[np.isfinite(values[:, k]), k]
+            if len(finite):
+                low, high = self.ranges.get(f"{path}:{k}", (np.inf, -np.inf))
+                self.ranges[f"{path}:{k}"] = (min(low, float(finite.min())), max(high, float(finite.max())))
+
+    def _add_lane(self, lane: str, run: Run, on) -> None:
+        """Only the changes are written."""
+        before = self._state.get(lane)
+        changed = np.flatnonzero(np.diff(on, prepend=not on[0] if before is None else before))
+        self._state[lane] = bool(on[-1])
+        if len(changed):
+            self.changes[lane] += len(changed) - (before is None)
+            index = rows.timelines(run.setting, run.first + changed, run.time[changed])
+            states = np.where(on[changed], "on", "off").tolist()
+            self._pen.columns(f"/phase/{lane}", index, rr.StateChange.columns(state=states))
+
+    def reach(self, path: str) -> tuple[float, float]:
+        """Smallest and largest value that a plot has shown."""
+        pairs = [pair for key, pair in self.ranges.items() if key.rsplit(":", 1)[0] == path]
+        return (min(low for low, _ in pairs), max(high for _, high in pairs)) if pairs else (0.0, 1.0)
+
+
+def nice_range(low: float, high: float, from_zero: bool = False) -> tuple[float, float]:
+    """A range with a margin, between round numbers. A constant stands in the middle of a range of a tenth of its size."""
+    if from_zero and low >= 0:
+        low = 0.0
+    span = high - low
+    if span <= 1e-3 * max(abs(low), abs(high)):
+        half = 0.05 * max(abs(low), abs(high)) or 0.5
+        low, high, span = low - half, high + half, 2 * half
+    step = 10 ** np.floor(np.log10(span / 4))
+    step *= next(m for m in (1, 2, 5, 10) if m * step >= span / 5)
+    bottom = np.floor((low - 0.04 * span) / step) * step
+    top = np.ceil((high + 0.04 * span) / step) * step
+    if low >= 0 and bottom < 0:
+        bottom = -0.04 * span if low > 0.04 * span or from_zero else -0.08 * span
+    return float(round(bottom, 12)), float(round(top, 12))

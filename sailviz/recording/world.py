@@ -1,0 +1,255 @@
+"""The system view: centre, planets, orbits, trail and craft, in units of order 1 to 100 (never metres, Rerun is float32).
+
+What moves has rows; what depends on how far the run reaches (sizes of the craft, of arrows, of the Sun) is a static scale that
+is written again at the end. Craft and arrows hang under `/world/craft`, which moves with the craft without turning.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import rerun as rr
+
+import sailviz
+from sailviz.frames import body_axes, from_frame, quaternion, unit
+from sailviz.recording import craft, look, meshes, rows
+from sailviz.recording.layout import Layout
+from sailviz.recording.look import points
+from sailviz.recording.pen import Pen, f4
+from sailviz.recording.samples import Frame, Samples, orbits, smooth_lines
+from sailviz.run import Reference, Run
+
+STRIP = 4  # drawn rows in one piece of the trail
+LADDER = 12  # osculating orbits that show a long descent
+NIGHT_CAPS = zip((98, 95, 92, 89, 86, 83, 80), (84, 92, 100, 108, 116, 120, 120), strict=True)
+NIGHT_CAPS = tuple((np.radians(angle), alpha) for angle, alpha in NIGHT_CAPS)  # nested shells make a soft terminator
+HALO = ((1.012, 80), (1.025, 48), (1.042, 28), (1.065, 14))  # radius, alpha
+
+
+class World:
+    """Writes /world."""
+
+    def __init__(self, pen: Pen, first: Run, frame: Frame):
+        self._pen, self._frame, self._setting = pen, frame, first.setting
+        self._held = None  # time, position, velocity before the next piece of trail
+        pen.static("/world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+        draw_stars(pen, "/world/stars", 1.0)
+        self._planet = not frame.sun and self._setting.body.radius > 0
+        if frame.sun:
+            draw_sun(pen)
+        elif self._planet:
+            draw_planet(pen, "/world/center", self._setting.body.name)
+            draw_air(pen, "/world/center/air")
+            if "Sun" in first.bodies:
+                draw_night(pen)
+        else:
+            pen.static("/world/center", rr.Points3D([[0, 0, 0]], radii=points(7), colors=[look.SUN]))
+        if not self._planet:
+            disc = meshes.annulus(0.06, look.DISC_RADIUS)
+            pen.mesh("/world/ecliptic", disc, look.ECLIPTIC, shaded=False)
+            pen.strip_style("/world/sun_line", look.SUN_LINE, look.WIDTH["helper"])
+            pen.strip_style("/world/height", look.HEIGHT, look.WIDTH["helper"])
+        for reference in self._setting.references:
+            draw_reference(pen, reference, frame.unit)
+        for name in first.bodies:
+            if name != "Sun":
+                color = look.planet_color(name)
+                pen.static(
+                    f"/world/planets/{name}/body",
+                    rr.Points3D.from_fields(radii=points(look.PLANET_DOTS.get(name, 4.6)), colors=[color]),
+                )
+                pen.label_style(f"/world/names/{name}", color, name)
+        self._draw_craft()
+        self._draw_trail_style()
+
+    def _draw_craft(self) -> None:
+        pen, kind = self._pen, self._setting.craft.kind
+        craft.draw(pen, "/world/craft/body/shape", kind, near=False)
+        if kind == "plasma-brake":
+            craft.tether(pen, "/world/craft/body/tether", 0.0, 1.2, 0.1, near=False)
+        if kind == "thruster":
+            craft.plume(pen, "/world/craft/body/shape/plume")
+        pen.arrow_style("/world/craft/thrust/arrow", look.THRUST, look.WIDTH["thrust"])
+        pen.arrow_style("/world/craft/velocity/arrow", look.VELOCITY, look.WIDTH["velocity"])
+
+    def _draw_trail_style(self) -> None:
+        pen, color = self._pen, None if self._planet else look.TRAIL_RECENT
+        if self._frame.sparse:
+            pen.strip_style("/world/orbit", color, look.WIDTH["recent"] * 0.8)
+        else:
+            pen.strip_style("/world/trail/recent", color, look.WIDTH["recent"])
+            if not self._planet:
+                pen.strip_style("/world/trail/past", look.TRAIL_PAST, look.WIDTH["past"])
+                pen.strip_style("/world/trail/future", look.TRAIL_FUTURE, look.WIDTH["future"])
+        if self._has_ladder:
+            pen.strip_style("/world/ladder", None, look.WIDTH["ladder"])
+
+    @property
+    def _has_ladder(self) -> bool:
+        return self._frame.sparse or (self._planet and self._frame.turns > 6)
+
+    def add(self, samples: Samples, last: bool = False) -> None:
+        """A group of drawn rows: whole pieces of trail, except at the end of the run."""
+        pen, index = self._pen, samples.index
+        pen.move("/world/craft", index, translation=samples.position)
+        pen.move("/world/rtn", index, translation=samples.position, quaternion=quaternion(samples.axes))
+        normal = from_frame(samples.axes, samples.normal_rtn)
+        pen.move("/world/craft/body", index, quaternion=quaternion(body_axes(normal, samples.axes[..., 1])))
+        pen.arrows("/world/craft/thrust/arrow", index, from_frame(samples.axes, samples.thrust_rtn))
+        pen.arrows("/world/craft/velocity/arrow", index, from_frame(samples.axes, samples.velocity_rtn))
+        for name, position in samples.run.bodies.items():
+            if name == "Sun":
+                self._add_sun(samples, position)
+            else:
+                pen.columns(
+                    f"/world/planets/{name}/body", index, rr.Points3D.columns(positions=f4(position / self._frame.unit))
+                )
+                pen.labels(f"/world/names/{name}", index, position / self._frame.unit)
+        if not self._planet:
+            zero = np.zeros_like(samples.position)
+            foot = samples.position * [1.0, 1.0, 0.0]
+            pen.strips("/world/sun_line", index, np.stack([zero, samples.position], 1))
+            pen.strips("/world/height", index, np.stack([foot, samples.position], 1))
+        if self._frame.sparse:
+            self._add_orbits(samples)
+        else:
+            self._add_trail(samples)
+
+    def _add_orbits(self, samples: Samples) -> None:
+        colors = self._ramp(samples) if self._planet else None
+        lines = orbits(samples.run, self._frame)
+        self._pen.strips("/world/orbit", samples.index, lines, colors)
+
+    def _add_trail(self, samples: Samples) -> None:
+        """Pieces of STRIP rows that join on; each stands at its last row, so that it shows when it has been flown."""
+        new = (samples.run.time, samples.position, samples.velocity)
+        held = self._held or tuple(part[:1] for part in new)  # a piece needs a point before it
+        self._held = tuple(part[-1:] for part in new)
+        pieces = self._frame.smooth
+        line = smooth_lines(*(np.concatenate(parts) for parts in zip(held, new, strict=True)), pieces)
+        whole, rest = divmod(len(samples), STRIP)
+        for start, number, length in ((0, whole, STRIP), (whole * STRIP, min(rest, 1), rest)):
+            if number == 0:
+                continue
+            first = start + STRIP * np.arange(number)
+            strips = line[first[:, None] * pieces + np.arange(length * pieces + 1)]
+            ends = first + length - 1
+            index = rows.timelines(self._setting, samples.number[ends], samples.run.time[ends])
+            colors = self._ramp(samples)[ends] if self._planet else None
+            for part in ("recent",) if self._planet else ("recent", "past", "future"):
+                self._pen.strips(f"/world/trail/{part}", index, strips, colors)
+
+    def _ramp(self, samples: Samples, factor: float = 1.0) -> np.ndarray:
+        """Colours by altitude from HIGH at the start to LOW on the ground; the root because a descent ends fast. (n,) int."""
+        start = max(self._frame.origin_radius - 1, 1e-9)
+        altitude = samples.run.elements.semi_major_axis / self._frame.unit - 1
+        down = np.sqrt(np.clip(1 - altitude / start, 0, 1))[:, None]
+        rgb = np.clip(factor * (np.array(look.LOW) * down + np.array(look.HIGH) * (1 - down)), 0, 255).astype(np.uint32)
+        return (rgb[:, 0] << 24) | (rgb[:, 1] << 16) | (rgb[:, 2] << 8) | 255
+
+    def add_ladder(self, samples: Samples) -> None:
+        """Osculating orbits of a few rows far apart, all of them in sight at any time: the whole descent at a glance."""
+        if self._has_ladder and len(samples):
+            color = self._ramp(samples, 0.55) if self._planet else np.full(len(samples), look.rgba(look.TRAIL_FUTURE))
+            self._pen.strips("/world/ladder", samples.index, orbits(samples.run, self._frame, 241), color)
+
+    def _add_sun(self, samples: Samples, sun) -> None:
+        """Day and night: the frame /world/night has its z axis away from the Sun."""
+        away = -unit(sun)
+        axes = body_axes(away, np.tile([0.0, 0.0, 1.0], (len(samples), 1)))
+        self._pen.move("/world/night", samples.index, quaternion=quaternion(axes))
+
+    def size(self, layout: Layout) -> None:
+        """Everything that depends on how far the run reaches."""
+        pen, radius, kind = self._pen, layout.scene_radius, self._setting.craft.kind
+        pen.scale("/world/stars", look.STARS_RADIUS * radius)
+        if self._frame.sun:
+            pen.scale("/world/sun", look.SUN_RADIUS * radius)
+        if not self._planet:
+            pen.scale("/world/ecliptic", radius)
+        if kind != "none":
+            pen.scale("/world/craft/body/shape", layout.sail_size)
+        if kind == "plasma-brake":
+            pen.scale("/world/craft/body/tether", layout.tether_size)
+        pen.scale("/world/craft/thrust", layout.thrust_scale)
+        pen.scale("/world/craft/velocity", look.VELOCITY_LENGTH * radius)
+        height = 0.16 if self._planet else look.LABEL_HEIGHT
+        pen.label("/world/craft/name", self._setting.craft.label or "craft", look.CRAFT, (0.0, 0.0, height * radius))
+
+
+def draw_stars(pen: Pen, path: str, radius: float, count: int = 1100) -> None:
+    """The same stars in every recording, on a sphere."""
+    random = np.random.default_rng(7)
+    direction = unit(random.normal(size=(count, 3)))
+    magnitude = random.random(count) ** 4
+    tints = np.array([[200, 215, 255], [255, 255, 255], [255, 236, 205]])[random.integers(0, 3, count)]
+    colors = (tints * (0.30 + 0.55 * magnitude)[:, None]).astype(np.uint8)
+    sizes = points(0.3 + 0.6 * magnitude)
+    pen.static(path, rr.Points3D(f4(radius * direction), colors=colors, radii=sizes, point_shading="flat"))
+
+
+def draw_sun(pen: Pen) -> None:
+    """Of radius 1: an unlit ball in a glow of three splats."""
+    pen.mesh("/world/sun/ball", meshes.sphere(32, 64)[0], look.SUN_DISC, shaded=False)
+    glow = ((1.15, (255, 214, 120, 230)), (2.4, (255, 160, 60, 70)), (5.5, (255, 120, 40, 22)))
+    pen.static(
+        "/world/sun/glow",
+        rr.GaussianSplats3D([[0, 0, 0]] * 3, scales=[[r] * 3 for r, _ in glow], colors=[c for _, c in glow]),
+    )
+    pen.label("/world/sun/name", "Sun", look.SUN, (0, 0, -2.1))
+
+
+def draw_planet(pen: Pen, path: str, name: str, dimmed: bool = False) -> None:
+    """A planet of radius 1: the Earth with its map (it does not turn: its rotation is no part of a run), others plain."""
+    ball, uv = meshes.sphere(64, 128)
+    picture = asset("earth_2048.jpg") if name == "Earth" else None
+    if picture is None:
+        color = look.OCEAN if name == "Earth" else look.dim(look.PLANETS.get(name, look.ROCK), 0.8)
+        pen.mesh(f"{path}/ball", ball, look.dim(color) if dimmed else color, shaded=False)
+        return
+    glb = meshes.textured_glb(ball, uv, picture.read_bytes())
+    more = {"albedo_factor": [140, 140, 140, 255]} if dimmed else {}
+    pen.static(f"{path}/ball", rr.Asset3D(contents=glb, media_type="model/gltf-binary", **more))
+
+
+def draw_air(pen: Pen, path: str) -> None:
+    """A halo: the far sides of nested shells."""
+    ball, _ = meshes.sphere()
+    for k, (radius, alpha) in enumerate(HALO):
+        shell = meshes.Mesh(radius * ball.vertices, ball.faces, ball.normals)
+        pen.mesh(f"{path}/shell{k}", shell, [*look.AIR, alpha], shaded=False, side="back")
+
+
+def draw_night(pen: Pen) -> None:
+    """Shells over the night side and the umbra, +z away from the Sun, and an arrow of sunlight."""
+    for k, (half_angle, alpha) in enumerate(NIGHT_CAPS):
+        shell = meshes.cap(half_angle)
+        lifted = meshes.Mesh((1.0035 + 0.001 * k) * shell.vertices, shell.faces, shell.normals)
+        pen.mesh(f"/world/night/shell{k}", lifted, [*look.NIGHT, alpha], shaded=False)
+    pen.mesh("/world/night/umbra", meshes.tube(0.0, 2.6, 1.0, 1.0, 96), look.UMBRA, shaded=False)
+    pen.static(
+        "/world/night/sunlight",
+        rr.Arrows3D(origins=[[0, 0, -1.55]], vectors=[[0, 0, 0.33]], colors=[look.SUN], radii=points(2.0)),
+    )
+    pen.label("/world/night/sunlight/name", "sunlight", look.SUN, (0, 0, -1.66))
+
+
+def draw_reference(pen: Pen, reference: Reference, length: float) -> None:
+    """An orbit that is there from the start. A target is drawn a little too large: on the trail itself it would tear."""
+    line = np.asarray(reference.points, float) / length
+    if reference.role == "planet":
+        color = look.dim(look.planet_color(reference.name))
+        pen.lines(f"/world/planets/{reference.name}/orbit", [line], color, look.WIDTH["orbit"])
+        return
+    target = reference.role == "target"
+    color, width = (look.TARGET, "target") if target else (look.INITIAL, "orbit")
+    name = reference.name.lower().replace(" ", "_").replace("/", "_")
+    pen.lines(f"/world/references/{name}", [1.006 * line if target else line], color, look.WIDTH[width])
+
+
+def asset(name: str) -> Path | None:
+    """A file that the package ships, None where it is missing."""
+    package = Path(sailviz.__file__ or sailviz.__path__[0])
+    homes = (package.parent / "assets", package.parent.parent / "assets", package / "assets", package.parent / "assets")
+    return next((home / name for home in homes if (home / name).is_file()), None)

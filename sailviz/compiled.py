@@ -1,0 +1,34 @@
+"""How sailviz compiles: one decorator, cached on disk, able to run from a read-only installation."""
+
+from __future__ import annotations
+
+import numba
+
+# No reassociation: compensated sums and NaN must mean what they say. Contraction (fused multiply-add) is safe.
+_OPTIONS = {"error_model": "numpy", "fastmath": {"contract", "nsz"}, "nogil": True}
+
+
+def compiled(function):
+    """Compile a module-level function of scalars and arrays on first use and keep the machine code on disk.
+
+    numba honours NUMBA_CACHE_DIR, then tries the package's __pycache__, then the user's cache folder; where none of them
+    can be written the function is compiled anew in every process.
+    """
+    try:
+        return numba.njit(cache=True, **_OPTIONS)(function)
+    except RuntimeError:  # "no locator available": nowhere to write
+        return numba.njit(**_OPTIONS)(function)
+
+
+def inlined(function):
+    """Like `compiled`, for small functions that only other compiled functions call; the optimiser merges them.
+
+    They may read and write arrays but not create any: compiled without reference counting, which would otherwise cost as much
+    as the physics (134 ns against 71 ns for one right-hand side, numba 0.68).
+    """
+    return numba.njit(_nrt=False, forceinline=True, **_OPTIONS)(function)
+
+
+def called(function):
+    """Like `inlined`, for functions called from so many places that copies of them would only lengthen the compilation."""
+    return numba.njit(_nrt=False, **_OPTIONS)(function)

@@ -1,0 +1,1 @@
+"""The compiled propagator: one right-hand side, one integrator, events."""

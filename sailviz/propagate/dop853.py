@@ -1,0 +1,457 @@
+"""Adaptive integration of one trajectory: Dormand-Prince 8(5,3) with dense output on the asked grid, and events on it.
+
+Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section II.10. Departures, all for orbits:
+the error is measured against |r| and against the larger of |v| and the circular speed instead of component by component; the
+dense output is rewritten as monomials once a step, so that a row of outputs is one vectorised Horner loop; steps land on
+every time at which the thrust factor or the steering table has a kink.
+
+`Integration` keeps everything between calls of `advance`, so a run may be computed in blocks of any size and is the same to
+the last bit.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sailviz.compiled import compiled, inlined
+from sailviz.propagate import dop853_coefficients as c
+from sailviz.propagate.dynamics import MU, SIZE, SURFACE_RADIUS, derivative
+from sailviz.propagate.events import END_OF_USE, RADIUS, STOP, measure
+
+SAFETY, SHRINK_MOST, GROW_MOST = 0.9, 0.333, 6.0  # of the step-size controller: Hairer's values
+EVENT_SAMPLES = 4  # per step, so that two crossings inside one step are seen
+MOST_EVENTS = 4096  # recorded between two calls
+
+# status of `advance`
+DONE, STOPPED, EVENTS_FULL, UNDERFLOW, NOT_FINITE, SURFACE = range(6)
+
+# rows of Integration.work after the sixteen stages; one array, so that the optimiser knows that they do not overlap
+Y, W, NEW = 16, 17, 18  # state at the start of the step, a state to evaluate, state at its end
+DENSE, CLOCK = 19, 27  # eight rows of monomial coefficients over the last step; a row of times
+
+# places in the CLOCK row and in Integration.count
+_T, _H, _DENSE_START, _DENSE_STEP = 0, 1, 2, 3
+_ROW, _INTERVAL, _IN_USE, _STARTED, _STEPS, _REJECTED, _EVENTS, _STATUS = 0, 1, 2, 3, 4, 5, 6, 7
+
+
+class Integration(NamedTuple):
+    """Everything that an integration remembers between calls."""
+
+    work: np.ndarray  # (28, SIZE) sixteen stages, the first the derivative at the state; then the rows named above
+    count: np.ndarray  # (8,) int64, see the places above
+    sign: np.ndarray  # (events,) event functions at the state
+    event: np.ndarray  # (MOST_EVENTS, 9) index in the watch, time s, state
+
+
+def start(t, position, velocity, mass, events=0) -> Integration:
+    """A fresh Integration at time s, position m, velocity m/s, mass kg, with room for a number of events."""
+    work = np.zeros((28, SIZE))
+    work[Y] = (*position, *velocity, mass)
+    work[CLOCK, _T] = work[CLOCK, _DENSE_START] = t
+    count = np.zeros(8, dtype=np.int64)
+    count[_IN_USE] = 1
+    return Integration(work, count, np.zeros(events), np.zeros((MOST_EVENTS if events else 1, 9)))
+
+
+def time(s: Integration) -> float:
+    """Time that the integration has reached, s."""
+    return float(s.work[CLOCK, _T])
+
+
+def state(s: Integration) -> np.ndarray:
+    """State (7,) that it has reached: position m, velocity m/s, mass kg."""
+    return s.work[Y].copy()
+
+
+def drain_events(s: Integration) -> list[tuple[int, float, np.ndarray]]:
+    """(index in the watch, time s, state (7,)) of every event since the last call; makes room for more. Index -1 is contact
+    with the surface."""
+    n = int(s.count[_EVENTS])
+    s.count[_EVENTS] = 0
+    return [(int(row[0]), float(row[1]), row[2:].copy()) for row in s.event[:n]]
+
+
+def in_use(s: Integration) -> bool:
+    """False once an END_OF_USE event has switched the device off for good."""
+    return bool(s.count[_IN_USE])
+
+
+def rows_done(s: Integration) -> int:
+    """Rows of the current block that are filled."""
+    return int(s.count[_ROW])
+
+
+def statistics(s: Integration) -> tuple[int, int]:
+    """Accepted and rejected steps so far."""
+    return int(s.count[_STEPS]), int(s.count[_REJECTED])
+
+
+@inlined
+def _error(k, h, mu):
+    """Scaled error of a step before division by the tolerance: Hairer's blend of the 5th- and 3rd-order estimates."""
+    r2 = v2 = s2 = u2 = e5r = e5v = e3r = e3v = 0.0
+    for j in range(3):
+        i = j + 3
+        p5 = c.E5_1 * k[0, j] + c.E5_6 * k[5, j] + c.E5_7 * k[6, j] + c.E5_8 * k[7, j]
+        p5 += c.E5_9 * k[8, j] + c.E5_10 * k[9, j] + c.E5_11 * k[10, j] + c.E5_12 * k[11, j]
+        p3 = c.E3_1 * k[0, j] + c.E3_6 * k[5, j] + c.E3_7 * k[6, j] + c.E3_8 * k[7, j]
+        p3 += c.E3_9 * k[8, j] + c.E3_10 * k[9, j] + c.E3_11 * k[10, j] + c.E3_12 * k[11, j]
+        w5 = c.E5_1 * k[0, i] + c.E5_6 * k[5, i] + c.E5_7 * k[6, i] + c.E5_8 * k[7, i]
+        w5 += c.E5_9 * k[8, i] + c.E5_10 * k[9, i] + c.E5_11 * k[10, i] + c.E5_12 * k[11, i]
+        w3 = c.E3_1 * k[0, i] + c.E3_6 * k[5, i] + c.E3_7 * k[6, i] + c.E3_8 * k[7, i]
+        w3 += c.E3_9 * k[8, i] + c.E3_10 * k[9, i] + c.E3_11 * k[10, i] + c.E3_12 * k[11, i]
+        e5r, e3r, e5v, e3v = e5r + p5 * p5, e3r + p3 * p3, e5v + w5 * w5, e3v + w3 * w3
+        r2, v2 = r2 + k[Y, j] * k[Y, j], v2 + k[Y, i] * k[Y, i]
+        s2, u2 = s2 + k[NEW, j] * k[NEW, j], u2 + k[NEW, i] * k[NEW, i]
+    r2 = max(r2, s2)
+    v2 = max(max(v2, u2), mu / np.sqrt(r2))
+    e5 = 0.5 * (e5r / r2 + e5v / v2)
+    e3 = 0.5 * (e3r / r2 + e3v / v2)
+    if e5 == 0.0 and e3 == 0.0:
+        return 0.0
+    return h * e5 / np.sqrt(e5 + 0.01 * e3)
+
+
+@inlined
+def _stages(t, h, factor, model, k):
+    """The stages 2 to 12 of a step, the new state, and stage 13, the derivative there: k[i - 1] = f(t + C_i h, k[W]).
+
+    Written out: a loop over stages would compile no faster and run at half the speed.
+    """
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (c.A2_1 * k[0, j])
+    derivative(t + c.C2 * h, k[W], factor, model, k[1])
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (c.A3_1 * k[0, j] + c.A3_2 * k[1, j])
+    derivative(t + c.C3 * h, k[W], factor, model, k[2])
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (c.A4_1 * k[0, j] + c.A4_3 * k[2, j])
+    derivative(t + c.C4 * h, k[W], factor, model, k[3])
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (c.A5_1 * k[0, j] + c.A5_3 * k[2, j] + c.A5_4 * k[3, j])
+    derivative(t + c.C5 * h, k[W], factor, model, k[4])
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (c.A6_1 * k[0, j] + c.A6_4 * k[3, j] + c.A6_5 * k[4, j])
+    derivative(t + c.C6 * h, k[W], factor, model, k[5])
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (c.A7_1 * k[0, j] + c.A7_4 * k[3, j] + c.A7_5 * k[4, j] + c.A7_6 * k[5, j])
+    derivative(t + c.C7 * h, k[W], factor, model, k[6])
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (
+            c.A8_1 * k[0, j] + c.A8_4 * k[3, j] + c.A8_5 * k[4, j] + c.A8_6 * k[5, j] + c.A8_7 * k[6, j]
+        )  # fmt: skip
+    derivative(t + c.C8 * h, k[W], factor, model, k[7])
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (
+            c.A9_1 * k[0, j] + c.A9_4 * k[3, j] + c.A9_5 * k[4, j] + c.A9_6 * k[5, j] + c.A9_7 * k[6, j]
+            + c.A9_8 * k[7, j]
+        )  # fmt: skip
+    derivative(t + c.C9 * h, k[W], factor, model, k[8])
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (
+            c.A10_1 * k[0, j] + c.A10_4 * k[3, j] + c.A10_5 * k[4, j] + c.A10_6 * k[5, j] + c.A10_7 * k[6, j]
+            + c.A10_8 * k[7, j] + c.A10_9 * k[8, j]
+        )  # fmt: skip
+    derivative(t + c.C10 * h, k[W], factor, model, k[9])
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (
+            c.A11_1 * k[0, j] + c.A11_4 * k[3, j] + c.A11_5 * k[4, j] + c.A11_6 * k[5, j] + c.A11_7 * k[6, j]
+            + c.A11_8 * k[7, j] + c.A11_9 * k[8, j] + c.A11_10 * k[9, j]
+        )  # fmt: skip
+    derivative(t + c.C11 * h, k[W], factor, model, k[10])
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (
+            c.A12_1 * k[0, j] + c.A12_4 * k[3, j] + c.A12_5 * k[4, j] + c.A12_6 * k[5, j] + c.A12_7 * k[6, j]
+            + c.A12_8 * k[7, j] + c.A12_9 * k[8, j] + c.A12_10 * k[9, j] + c.A12_11 * k[10, j]
+        )  # fmt: skip
+    derivative(t + h, k[W], factor, model, k[11])
+    for j in range(SIZE):
+        k[NEW, j] = k[Y, j] + h * (
+            c.A13_1 * k[0, j] + c.A13_6 * k[5, j] + c.A13_7 * k[6, j] + c.A13_8 * k[7, j] + c.A13_9 * k[8, j]
+            + c.A13_10 * k[9, j] + c.A13_11 * k[10, j] + c.A13_12 * k[11, j]
+        )  # fmt: skip
+    derivative(t + h, k[NEW], factor, model, k[12])
+
+
+@inlined
+def _interpolant(t, h, factor, model, k, m):
+    """Monomial coefficients m (8, SIZE) of the dense output over the step: y(t + x h) = sum m[i] x^i."""
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (
+            c.A14_1 * k[0, j] + c.A14_7 * k[6, j] + c.A14_8 * k[7, j] + c.A14_9 * k[8, j] + c.A14_10 * k[9, j]
+            + c.A14_11 * k[10, j] + c.A14_12 * k[11, j] + c.A14_13 * k[12, j]
+        )  # fmt: skip
+    derivative(t + c.C14 * h, k[W], factor, model, k[13])
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (
+            c.A15_1 * k[0, j] + c.A15_6 * k[5, j] + c.A15_7 * k[6, j] + c.A15_8 * k[7, j] + c.A15_11 * k[10, j]
+            + c.A15_12 * k[11, j] + c.A15_13 * k[12, j] + c.A15_14 * k[13, j]
+        )  # fmt: skip
+    derivative(t + c.C15 * h, k[W], factor, model, k[14])
+    for j in range(SIZE):
+        k[W, j] = k[Y, j] + h * (
+            c.A16_1 * k[0, j] + c.A16_6 * k[5, j] + c.A16_7 * k[6, j] + c.A16_8 * k[7, j] + c.A16_9 * k[8, j]
+            + c.A16_13 * k[12, j] + c.A16_14 * k[13, j] + c.A16_15 * k[14, j]
+        )  # fmt: skip
+    derivative(t + c.C16 * h, k[W], factor, model, k[15])
+    for j in range(SIZE):
+        f0 = k[NEW, j] - k[Y, j]
+        f1 = h * k[0, j] - f0
+        f2 = 2.0 * f0 - h * (k[12, j] + k[0, j])
+        f3 = h * (
+            c.D4_1 * k[0, j] + c.D4_6 * k[5, j] + c.D4_7 * k[6, j] + c.D4_8 * k[7, j] + c.D4_9 * k[8, j]
+            + c.D4_10 * k[9, j] + c.D4_11 * k[10, j] + c.D4_12 * k[11, j] + c.D4_13 * k[12, j] + c.D4_14 * k[13, j]
+            + c.D4_15 * k[14, j] + c.D4_16 * k[15, j]
+        )  # fmt: skip
+        f4 = h * (
+            c.D5_1 * k[0, j] + c.D5_6 * k[5, j] + c.D5_7 * k[6, j] + c.D5_8 * k[7, j] + c.D5_9 * k[8, j]
+            + c.D5_10 * k[9, j] + c.D5_11 * k[10, j] + c.D5_12 * k[11, j] + c.D5_13 * k[12, j] + c.D5_14 * k[13, j]
+            + c.D5_15 * k[14, j] + c.D5_16 * k[15, j]
+        )  # fmt: skip
+        f5 = h * (
+            c.D6_1 * k[0, j] + c.D6_6 * k[5, j] + c.D6_7 * k[6, j] + c.D6_8 * k[7, j] + c.D6_9 * k[8, j]
+            + c.D6_10 * k[9, j] + c.D6_11 * k[10, j] + c.D6_12 * k[11, j] + c.D6_13 * k[12, j] + c.D6_14 * k[13, j]
+            + c.D6_15 * k[14, j] + c.D6_16 * k[15, j]
+        )  # fmt: skip
+        f6 = h * (
+            c.D7_1 * k[0, j] + c.D7_6 * k[5, j] + c.D7_7 * k[6, j] + c.D7_8 * k[7, j] + c.D7_9 * k[8, j]
+            + c.D7_10 * k[9, j] + c.D7_11 * k[10, j] + c.D7_12 * k[11, j] + c.D7_13 * k[12, j] + c.D7_14 * k[13, j]
+            + c.D7_15 * k[14, j] + c.D7_16 * k[15, j]
+        )  # fmt: skip
+        # Hairer's nested form y + x(f0 + (1-x)(f1 + x(f2 + (1-x)(f3 + x(f4 + (1-x)(f5 + x f6)))))) multiplied out
+        m[0, j] = k[Y, j]
+        m[1, j] = f0 + f1
+        m[2, j] = f2 + f3 - f1
+        m[3, j] = f4 + f5 - 2.0 * f3 - f2
+        m[4, j] = f6 - 3.0 * f5 - 2.0 * f4 + f3
+        m[5, j] = f4 + 3.0 * f5 - 3.0 * f6
+        m[6, j] = 3.0 * f6 - f5
+        m[7, j] = -f6
+
+
+@inlined
+def _fill(m, t0, h, t_out, out, first, last):
+    """Rows first..last of out (components, n) at the times t_out (n,) from the polynomial of the step [t0, t0 + h]."""
+    inverse = 1.0 / h
+    times = t_out[first:last]
+    for j in range(out.shape[0]):
+        m0, m1, m2, m3 = m[0, j], m[1, j], m[2, j], m[3, j]
+        m4, m5, m6, m7 = m[4, j], m[5, j], m[6, j], m[7, j]
+        row = out[j][first:last]  # a slice of one row: its stride is known, the loop becomes vector code
+        for i in range(len(times)):
+            x = (times[i] - t0) * inverse
+            row[i] = m0 + x * (m1 + x * (m2 + x * (m3 + x * (m4 + x * (m5 + x * (m6 + x * m7))))))
+
+
+@inlined
+def _evaluate(m, x, w):
+    """w (SIZE,) = the polynomial at x in [0, 1]."""
+    for j in range(SIZE):
+        p = m[7, j]
+        for i in range(6, -1, -1):
+            p = p * x + m[i, j]
+        w[j] = p
+
+
+@inlined
+def _root(m, kind, level, mu, low, high, g_low, w):
+    """x in [low, high] where the event function changes sign: bisection to the last bit, w = the state there."""
+    for _ in range(64):
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high:
+            break
+        _evaluate(m, middle, w)
+        g = measure(kind, level, w, mu)
+        if (g < 0.0) == (g_low < 0.0):
+            low = middle
+        else:
+            high = middle
+    _evaluate(m, high, w)
+    return high
+
+
+@inlined
+def _note(s, index, time, w):
+    n = s.count[_EVENTS]
+    s.event[n, 0] = index
+    s.event[n, 1] = time
+    for j in range(7):
+        s.event[n, 2 + j] = w[j]
+    s.count[_EVENTS] = n + 1
+
+
+@compiled
+def _find_events(s, watch, t0, h, x_end, mu, w):
+    """Record every event of the step [t0, t0 + h] up to x_end in order of time. Returns x of the first that stops the run or
+    ends the use of the device, else 2, and its index."""
+    dense = s.work[DENSE:CLOCK]
+    before = s.count[_EVENTS]
+    low = 0.0
+    for piece in range(1, EVENT_SAMPLES + 1):
+        high = x_end * piece / EVENT_SAMPLES
+        stop_x, stop_index = 2.0, -1
+        first = s.count[_EVENTS]
+        for e in range(len(watch.kind)):
+            kind, level = watch.kind[e], watch.level[e]
+            _evaluate(dense, high, w)
+            g_low, g = s.sign[e], measure(kind, level, w, mu)
+            s.sign[e] = g
+            if watch.action[e] == END_OF_USE and s.count[_IN_USE] == 0:
+                continue
+            if not ((g_low < 0.0 and g >= 0.0 and watch.sense[e] >= 0) or (g_low > 0.0 and g <= 0.0 and watch.sense[e] <= 0)):
+                continue
+            x = _root(dense, kind, level, mu, low, high, g_low, w)
+            at = s.count[_EVENTS]
+            _note(s, e, t0 + x * h, w)
+            while at > first and s.event[at - 1, 1] > s.event[at, 1]:  # keep them in order of time
+                for j in range(9):
+                    s.event[at - 1, j], s.event[at, j] = s.event[at, j], s.event[at - 1, j]
+                at -= 1
+            if watch.action[e] != 0 and x < stop_x:
+                stop_x, stop_index = x, e
+        if stop_index >= 0:
+            n = s.count[_EVENTS]
+            while n > before and s.event[n - 1, 1] > t0 + stop_x * h:  # what would have come after the stop did not happen
+                n -= 1
+            s.count[_EVENTS] = n
+            _evaluate(dense, stop_x, w)
+            for e in range(len(watch.kind)):
+                s.sign[e] = measure(watch.kind[e], watch.level[e], w, mu)
+            s.sign[stop_index] = 0.0
+            return stop_x, stop_index
+        low = high
+    return 2.0, -1
+
+
+@compiled
+def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step):
+    """Integrate until every row of the block is filled, or until something ends the run. Returns a status.
+
+    s : Integration, changed in place. model : Model. breaks (k,), factors (k,) : the thrust factor is factors[i] from
+    breaks[i] on, breaks[0] <= start. watch : Watch. t_out (n,) : increasing times of this block's rows. out (6 or 7, n) :
+    position, velocity and, with seven rows, mass. t_end : end of the whole run. tolerance : relative, per step.
+    largest_step : s. DONE: block full; EVENTS_FULL: drain them and call again with the same block; STOPPED by an event;
+    SURFACE: the craft touched the body; UNDERFLOW or NOT_FINITE: the integration broke down at time(s).
+    """
+    n, components = t_out.shape[0], out.shape[0]
+    mu, surface = model.parameters[MU], model.parameters[SURFACE_RADIUS]
+    k, m, clock, count = s.work, s.work[DENSE:CLOCK], s.work[CLOCK], s.count
+    y, w, new = k[Y], k[W], k[NEW]
+    watched = len(watch.kind)
+    if count[_STARTED] == 0:
+        count[_STARTED] = 1
+        r = np.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
+        while count[_INTERVAL] + 1 < len(breaks) and breaks[count[_INTERVAL] + 1] <= clock[_T]:
+            count[_INTERVAL] += 1
+        derivative(clock[_T], y, factors[count[_INTERVAL]], model, k[0])
+        speed = np.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5])
+        dynamical = r / max(speed, np.sqrt(mu / r))
+        clock[_H] = min(3.0 * tolerance**0.125 * dynamical, largest_step)
+        for e in range(watched):
+            s.sign[e] = measure(watch.kind[e], watch.level[e], y, mu)
+    row = 0
+    if count[_STATUS] == EVENTS_FULL:
+        row = count[_ROW]
+    count[_STATUS] = DONE
+    t = clock[_T]
+    interval = count[_INTERVAL]
+    factor = factors[interval] * count[_IN_USE]
+    ended = False
+    while row < n:
+        # rows inside the last step, or exactly at its end
+        if t_out[row] < t:
+            last = row + 1
+            while last < n and t_out[last] < t:
+                last += 1
+            _fill(m, clock[_DENSE_START], clock[_DENSE_STEP], t_out, out, row, last)
+            row = last
+            continue
+        if t_out[row] == t:
+            for j in range(components):
+                out[j, row] = y[j]
+            row += 1
+            continue
+        if ended:
+            break
+        if count[_EVENTS] > MOST_EVENTS - 64:
+            count[_STATUS] = EVENTS_FULL
+            break
+        # one accepted step, landing on the next kink of the thrust or on the end
+        limit = t_end
+        if interval + 1 < len(breaks) and breaks[interval + 1] < limit:
+            limit = breaks[interval + 1]
+        wish = clock[_H]
+        rejected = False
+        while True:
+            h = min(wish, largest_step)
+            landing = t + 1.01 * h >= limit
+            if landing:
+                h = limit - t
+            if h <= 4.0e-16 * max(abs(t), abs(t_end)) and not landing:
+                count[_STATUS] = UNDERFLOW
+                break
+            _stages(t, h, factor, model, k)
+            error = _error(k, h, mu) / tolerance
+            if error < 1.0:
+                break
+            if not np.isfinite(error):
+                # leave a singular spot slowly; give up when even a tiny step is not finite
+                wish = 0.1 * h
+                if wish <= 4.0e-14 * max(abs(t), abs(t_end)):
+                    count[_STATUS] = NOT_FINITE
+                    break
+            else:
+                wish = h * max(SHRINK_MOST, SAFETY * error**-0.125)
+            rejected = True
+            count[_REJECTED] += 1
+        if count[_STATUS] != DONE:
+            break
+        grow = GROW_MOST if error == 0.0 else min(GROW_MOST, max(SHRINK_MOST, SAFETY * error**-0.125))
+        if rejected:
+            grow = min(grow, 1.0)
+        # a step cut short by a landing must not shorten the next one
+        clock[_H] = max(h * grow, wish) if landing and not rejected else h * grow
+        count[_STEPS] += 1
+        t0 = t
+        t = limit if landing else t + h
+        touched = new[0] * new[0] + new[1] * new[1] + new[2] * new[2] < surface * surface
+        clock[_DENSE_START], clock[_DENSE_STEP] = t0, h
+        if watched > 0 or touched or t_out[row] < t:
+            _interpolant(t0, h, factor, model, k, m)
+        stop_x, stop_index, contact = 2.0, -1, 2.0
+        if touched:
+            contact = _root(m, RADIUS, surface, mu, 0.0, 1.0, 1.0, w)
+        if watched > 0:
+            stop_x, stop_index = _find_events(s, watch, t0, h, min(contact, 1.0), mu, w)
+        if contact < min(stop_x, 2.0):
+            _evaluate(m, contact, w)
+            _note(s, -1, t0 + contact * h, w)
+            stop_x, stop_index, count[_STATUS] = contact, -1, SURFACE
+        if stop_x < 2.0:  # the run goes on, or ends, at the event
+            t = t0 + stop_x * h
+            _evaluate(m, stop_x, new)
+            if stop_index >= 0 and watch.action[stop_index] == STOP:
+                count[_STATUS] = STOPPED
+            elif stop_index >= 0:
+                count[_IN_USE] = 0
+        new_factor = factor
+        if t == limit and limit < t_end and interval + 1 < len(breaks):
+            interval += 1
+            new_factor = factors[interval]
+        new_factor = new_factor * count[_IN_USE]
+        if stop_x < 2.0 or new_factor != factor or (t == limit and limit < t_end):
+            factor = new_factor
+            derivative(t, new, factor, model, k[0])
+        else:
+            for j in range(SIZE):
+                k[0, j] = k[12, j]
+        for j in range(SIZE):
+            y[j] = new[j]
+        clock[_T], count[_INTERVAL] = t, interval
+        if count[_STATUS] != DONE:
+            ended = True
+    count[_ROW] = row
+    clock[_T], count[_INTERVAL] = t, interval
+    return count[_STATUS]

@@ -14,24 +14,12 @@ NOW = rrb.TimeRangeBoundary.cursor_relative()
 WHOLE_TIME = rrb.TimeAxis(view_range=rr.TimeRange(start=ENDLESS, end=ENDLESS))
 
 
-def blueprint(
-    layout: Layout, *, active: str | None = None, only: str | None = None, panels: bool = True
-) -> rrb.Blueprint:
-    """The blueprint of a recording.
-
-    active : the tab that is in front, by the start of its name; only : show this view alone; panels : False leaves out the
-    menu and the time panel, for pictures.
-    """
-    views = all_views(layout)
-    if only is not None:
-        body = find(views, only)
-    else:
-        body = arrange(layout, views, active)
+def blueprint(layout: Layout) -> rrb.Blueprint:
+    """The blueprint of a recording."""
     return rrb.Blueprint(
-        body,
-        rrb.TopPanel(state="expanded" if panels else "hidden"),
+        arrange(layout),
         rrb.TimePanel(
-            state="collapsed" if panels else "hidden",
+            state="collapsed",
             timeline=layout.timeline,
             playback_speed=layout.speed,
             play_state="paused",
@@ -44,56 +32,26 @@ def blueprint(
     )
 
 
-def all_views(layout: Layout) -> dict[str, rrb.View]:
-    """Every view by its name, those in space first."""
-    views = {camera.name: space_view(layout, camera) for camera in layout.cameras}
-    views[layout.close_up.name] = close_view(layout.close_up)
-    views["About"] = rrb.TextDocumentView(origin="/about", name="About")
-    views["Events"] = rrb.TextLogView(origin="/log", name="Events")
-    for plot in (*layout.plots, *layout.environment):
-        views[plot.title] = plot_view(plot)
-    if layout.lanes:
-        views["Phases"] = rrb.StateTimelineView(
-            origin="/phase", contents=[f"+ /phase/{lane}" for lane in layout.lanes], name="Phases", time_view=WHOLE_TIME
-        )
-    return views
-
-
-def find(views: dict, name: str):
-    """The view whose name starts with `name`; capitals do not count. Raises KeyError with the names there are."""
-    for title, view in views.items():
-        if title.lower().startswith(name.lower()):
-            return view
-    raise KeyError(f"there is no view {name}; there are {', '.join(short_names(views))}")
-
-
-def short_names(views) -> list[str]:
-    """Names of views without what stands in brackets."""
-    return [name.split(" (")[0].split(" [")[0] for name in views]
-
-
-def arrange(layout: Layout, views: dict, active: str | None) -> rrb.Container:
-    spaces = [views[camera.name] for camera in layout.cameras]
-    words = [views["About"], views["Events"]]
-    extra = [views[plot.title] for plot in layout.environment]
-    front = find(views, active) if active else None
-
-    def tabs(group):
-        return rrb.Tabs(*group, active_tab=group.index(front) if front in group else 0)
-
+def arrange(layout: Layout) -> rrb.Container:
+    """Left: cameras as tabs over close-up and words. Right: curves over lanes."""
+    words = rrb.Tabs(
+        rrb.TextDocumentView(origin="/about", name="About"), rrb.TextLogView(origin="/log", name="Events"), active_tab=0
+    )
     left = rrb.Vertical(
-        tabs(spaces),
-        rrb.Horizontal(views[layout.close_up.name], tabs(words), column_shares=[3, 2]),
+        rrb.Tabs(*(space_view(layout, camera) for camera in layout.cameras), active_tab=0),
+        rrb.Horizontal(close_view(layout.close_up), words, column_shares=[3, 2]),
         row_shares=[4, 3],
     )
-    right = [views[plot.title] for plot in layout.plots]
+    right = [plot_view(plot) for plot in layout.plots]
     shares = [plot.share for plot in layout.plots]
+    extra = [plot_view(plot) for plot in layout.environment]
     if extra:
-        right.append(tabs(extra) if len(extra) > 1 else extra[0])
+        right.append(rrb.Tabs(*extra, active_tab=0) if len(extra) > 1 else extra[0])
         shares.append(2.6)
     if layout.lanes:
-        right.append(views["Phases"])
-        shares.append(1.0 + 0.7 * len(layout.lanes))
+        lanes = [f"+ /phase/{lane}" for lane in layout.lanes]
+        right.append(rrb.StateTimelineView(origin="/phase", contents=lanes, name="Phases", time_view=WHOLE_TIME))
+        shares.append(1.0 + 0.7 * len(lanes))
     return rrb.Horizontal(left, rrb.Vertical(*right, row_shares=shares), column_shares=[5, 3])
 
 

@@ -15,10 +15,11 @@ def directions(elevations, step: float = 10.0) -> np.ndarray:
     ).reshape(-1, 3)
 
 
-def apart(arrows, facing=None, elevations=(12, 20, 28, 36, 44)) -> np.ndarray:
+def apart(arrows, facing=None, open_to=None, elevations=(12, 20, 28, 36, 44)) -> np.ndarray:
     """Direction from which arrows from the origin look long and well separated. arrows (k, 3) -> (3,) unit.
 
-    `facing` is the normal of a sail whose sunward side should be seen at a slant of about 70 degrees.
+    `facing` is the normal of a sail whose sunward side should be seen at a slant of about 70 degrees, `open_to` the normal of
+    a plane that should not be seen edge-on.
     """
     arrows = unit(np.asarray(arrows, float))
     eyes = directions(elevations)
@@ -36,6 +37,8 @@ def apart(arrows, facing=None, elevations=(12, 20, 28, 36, 44)) -> np.ndarray:
     score = 1.2 * np.minimum(closest, 0.7) + 0.6 * length.min(1) + 0.25 * length.mean(1)
     if facing is not None:
         score = score + 1.2 * (1 - np.abs(-(eyes @ facing) - 0.36) / 0.36)
+    if open_to is not None:
+        score = score + 0.9 * np.abs(eyes @ open_to)
     return eyes[np.argmax(score)]
 
 

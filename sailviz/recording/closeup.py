@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from sailviz.frames import body_axes, quaternion, unit
+from sailviz.frames import body_axes, quaternion, to_frame, unit
 from sailviz.recording import craft, look
 from sailviz.recording.layout import Layout
 from sailviz.recording.look import points
@@ -26,6 +26,11 @@ CONE_RADIUS = 4.4
 ARC = 25  # points of an arc
 TETHER = 12.0
 ARROWS = 14  # along a tether
+THIN_AIR = (
+    (1.004, 60),
+    (1.010, 36),
+    (1.018, 18),
+)  # radius and alpha: the planet is near, the halo must not cover the craft
 
 
 def close_up(pen: Pen, first: Run):
@@ -53,7 +58,7 @@ class SailCloseUp:
         pen.arrow_style("/sail/force/arrow", look.THRUST, look.WIDTH["close thrust"])
         pen.label_style("/sail/normal/name", look.NORMAL, "thrust axis" if self._kind == "thruster" else "normal")
         pen.label_style("/sail/velocity/name", look.VELOCITY, "velocity")
-        pen.label_style("/sail/force/name", look.THRUST)
+        pen.label_style("/sail/force_name" if self._kind == "solar-sail" else "/sail/force/name", look.THRUST)
         pen.strip_style("/sail/pitch/arc", look.PITCH, look.WIDTH["arc"])
         corners = np.arange(1, ARC)
         fan = np.stack([0 * corners, corners, corners + 1], 1).astype(np.uint32)
@@ -98,7 +103,10 @@ class SailCloseUp:
         root = np.sqrt(size)[:, None] * unit(thrust)
         self._pen.arrows("/sail/force/arrow", samples.index, root)
         texts = [f"thrust {acceleration_text(a)}" if a > 0 else "no thrust" for a in size.tolist()]
-        self._pen.labels("/sail/force/name", samples.index, 1.16 * root, texts)
+        if self._kind == "solar-sail":  # on the normal, or near it: its label would cover the others
+            self._pen.labels("/sail/force_name", samples.index, np.tile([0.0, 0.0, -10.5], (len(samples), 1)), texts)
+        else:
+            self._pen.labels("/sail/force/name", samples.index, 1.16 * root, texts)
 
     def _add_angles(self, samples: Samples) -> None:
         """Pitch as a fan from the radial direction to the normal, cone as an arc to the thrust, clock on the normal's circle."""
@@ -110,7 +118,7 @@ class SailCloseUp:
         corners = np.concatenate([np.zeros((count, 1, 3)), fan], 1)
         columns = rr.Mesh3D.columns(vertex_positions=f4(corners.reshape(-1, 3))).partition([ARC + 1] * count)
         pen.columns("/sail/pitch/fan", index, columns)
-        pen.labels("/sail/pitch/name", index, 1.12 * fan[:, ARC // 3], angle_texts("pitch", attitude.pitch))
+        pen.labels("/sail/pitch/name", index, 1.18 * fan[:, ARC // 4], angle_texts("pitch", attitude.pitch))
         thrust = np.where(np.any(samples.thrust_rtn, 1, keepdims=True), unit(samples.thrust_rtn), out)
         pen.strips("/sail/cone", index, CONE_RADIUS * arcs(out, thrust))
         self._add_clock(samples, attitude.pitch, attitude.clock)
@@ -130,9 +138,9 @@ class SailCloseUp:
         ends = [on_circle(np.zeros((len(samples), 1))), center, on_circle(clock[:, None])]
         pen.strips("/sail/clock/spokes", index, np.concatenate(ends, 1))
         pen.strips("/sail/clock/arc", index, on_circle(clock[:, None] * np.linspace(0, 1, 37)))
-        # opposite the middle of the arc, the short way round: never on the normal's own label
-        short = np.where(clock > np.pi, clock - 2 * np.pi, clock)
-        place = on_circle((short / 2 + np.pi)[:, None])[:, 0]
+        # in the middle of the arc, but on the far side of the circle where the arc is too short for two labels
+        middle = clock / 2 + np.pi * np.clip(1 - clock / (0.5 * np.pi), 0, 1)
+        place = on_circle(middle[:, None])[:, 0] * [1.0, 1.15, 1.15]
         pen.labels("/sail/clock/name", index, place, angle_texts("clock", clock))
 
     def size(self, layout: Layout) -> None:
@@ -152,10 +160,10 @@ class TetherCloseUp:
         pen.scale("/sail/body/tether", TETHER)
         if first.setting.body.radius > 0:
             draw_planet(pen, "/sail/planet/shape", first.setting.body.name, dimmed=True)
-            draw_air(pen, "/sail/planet/shape/air")
+            draw_air(pen, "/sail/planet/shape/air", THIN_AIR)
             pen.static("/sail/planet", rr.Transform3D(translation=[0.0, 0.0, -318.0]))
             pen.scale("/sail/planet/shape", 300.0)
-        pen.arrow_style("/sail/force/arrows", look.THRUST, 1.3)
+        pen.arrow_style("/sail/body/force/arrows", look.THRUST, 1.3)
         pen.label_style("/sail/force_name", look.THRUST)
         pen.arrow_style("/sail/velocity", look.VELOCITY, 1.8)
         pen.label_style("/sail/velocity/name", look.VELOCITY, "velocity")
@@ -172,10 +180,13 @@ class TetherCloseUp:
         pen.arrows("/sail/velocity", index, 8.0 * velocity)
         pen.labels("/sail/velocity/name", index, 8.6 * velocity)
         size = samples.run.thrust.magnitude
-        # uniform along the tether, since the run knows the whole force only
-        root = (np.sqrt(size)[:, None] * unit(thrust))[:, None, :]
-        down = -(0.10 + 0.85 * np.linspace(0, 1, ARROWS))[None, :, None] * TETHER * normal[:, None, :]
-        self._add_many("/sail/force/arrows", index, np.broadcast_to(root, (count, ARROWS, 3)), down)
+        # Uniform along the tether, since the run knows the whole force only. In the tether's own frame, across it: there the
+        # static scale can stretch the arrows and leave their places alone.
+        root = np.sqrt(size)[:, None] * to_frame(axes, unit(thrust)) * [1.0, 1.0, 0.0]
+        down = np.zeros((ARROWS, 3))
+        down[:, 2] = -(0.10 + 0.85 * np.linspace(0, 1, ARROWS)) * TETHER
+        arrows = np.broadcast_to(root[:, None, :], (count, ARROWS, 3))
+        self._add_many("/sail/body/force/arrows", index, arrows, np.broadcast_to(down, arrows.shape))
         texts = [f"drag {acceleration_text(a)}" if a > 0 else "no drag" for a in size.tolist()]
         pen.labels("/sail/force_name", index, 0.5 * TETHER * -normal + 7.2 * unit(thrust), texts)
         origins = 9.0 * velocity[:, None, :] + np.array([[0, y, z] for y in (-1.5, 1.5) for z in (-3, -5.5, -8, -10.5)])
@@ -188,7 +199,7 @@ class TetherCloseUp:
         self._pen.columns(path, index, columns.partition([vectors.shape[1]] * len(vectors)))
 
     def size(self, layout: Layout) -> None:
-        pass
+        self._pen.scale("/sail/body/force", [0.75 * layout.close_thrust_scale, 0.75 * layout.close_thrust_scale, 1.0])
 
 
 def turned(rtn):

@@ -60,9 +60,6 @@ class Drawing:
         ]
         self._pen.columns("/log", index, rr.TextLog.columns(text=texts, level=levels))
 
-    def layout_json(self) -> str:
-        return self._layout.to_json()
-
     def _begin(self, block: Run) -> None:
         self._frame = Frame.of(block)
         self._world = World(self._pen, block, self._frame)

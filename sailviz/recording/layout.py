@@ -1,13 +1,8 @@
-"""What the views need to know about a run, once it is known how far it reaches: a handful of numbers and words.
-
-A layout is plain data. It travels in the recording as JSON (/scene, `layout`), so that a picture of another tab or without
-panels can be laid out afresh from the file alone.
-"""
+"""What the views need to know about a run, once it is known how far it reaches: a handful of numbers and words."""
 
 from __future__ import annotations
 
-import json
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -66,23 +61,6 @@ class Layout:
     speed: float  # seconds of the run in one second of replay
     rows_per_second: float
 
-    def to_json(self) -> str:
-        return json.dumps(asdict(self), sort_keys=True)
-
-    @staticmethod
-    def from_json(text: str) -> Layout:
-        values = json.loads(text)
-
-        def tuples(value):
-            return tuple(map(tuples, value)) if isinstance(value, list) else value
-
-        values = {name: tuples(value) for name, value in values.items()}
-        values["cameras"] = tuple(Camera(**{k: tuples(v) for k, v in c.items()}) for c in values["cameras"])
-        values["close_up"] = Camera(**{k: tuples(v) for k, v in values["close_up"].items()})
-        for name in ("plots", "environment"):
-            values[name] = tuple(PlotView(**{k: tuples(v) for k, v in plot.items()}) for plot in values[name])
-        return Layout(**values)
-
 
 class Extents:
     """How far a run reaches, gathered block by block over all rows."""
@@ -134,7 +112,7 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
         views, tail = about_planet(radius, middle, setting, frame), min(2.6 * revolution, 0.3 * setting.duration)
     names = name_views(views, setting, frame, sail, tether)
     timelines = ("sim_time", "step") if setting.epoch is None else ("utc", "sim_time", "step")
-    shown, environment = plot_views(curves, frame)
+    shown, environment = plot_views(curves, frame, setting.craft.kind not in ("plasma-brake", "none"))
     return Layout(
         sun=frame.sun,
         scene_radius=radius,
@@ -175,7 +153,7 @@ def revolution_time(row: Run) -> float:
 def about_sun(radius: float, height: float, setting: Setting) -> list[Camera]:
     """Cameras of a scene round the Sun: from outside, from the pole, along with the craft."""
     lifted = height > 0.12 * radius
-    outside = np.array([0.25, -1.95, 0.88] if lifted else [0.1, -1.66, 1.05]) * radius
+    outside = np.array([0.22, -1.72, 0.80] if lifted else [0.1, -1.50, 0.95]) * radius
     sail = setting.craft.kind == "solar-sail"
     follow = np.array([-0.42, 0.50, 0.26] if sail else [0.30, -0.62, 0.26]) * radius
     return [
@@ -209,9 +187,15 @@ def close_up_camera(setting: Setting, middle: Samples) -> Camera:
         if all(np.linalg.norm(arrow - other) > 0.05 for other in arrows) and np.linalg.norm(arrow) > 0.5:
             arrows.append(arrow)
     film = setting.craft.kind == "solar-sail"
-    eye = cameras.apart(arrows, facing=normal if film else None, elevations=(20, 28, 36))
+    fan = np.cross([1.0, 0.0, 0.0], normal)
+    eye = cameras.apart(
+        arrows,
+        facing=normal if film else None,
+        open_to=unit(fan) if np.linalg.norm(fan) > 0.05 else None,
+        elevations=(20, 28, 36),
+    )
     name = "Thruster close-up" if setting.craft.kind == "thruster" else f"{setting.craft.label or 'Craft'} close-up"
-    return Camera(f"{name} (orbital frame)", "/sail", tuple((27.0 * eye).tolist()), (1.0, 0.0, 0.0))
+    return Camera(f"{name} (orbital frame)", "/sail", tuple((26.0 * eye).tolist()), (1.0, 0.0, 0.0))
 
 
 def name_views(views: list[Camera], setting: Setting, frame: Frame, sail: float, tether: float) -> tuple[Camera, ...]:
@@ -244,8 +228,11 @@ def in_words(factor: float) -> str:
     return f"{float(f'{factor:.2g}'):.10g}"
 
 
-def plot_views(curves: Curves, frame: Frame) -> tuple[tuple[PlotView, ...], tuple[PlotView, ...]]:
-    """Which curves are shown, in which ranges: first the four that every run has, then what the environment did."""
+def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple[PlotView, ...], tuple[PlotView, ...]]:
+    """Which curves are shown, in which ranges: first those that every run has, then what the environment did.
+
+    steers : whether the craft has angles that mean something
+    """
     known = {plot.path: plot for plot in curves.plots}
 
     def view(path: str, **more) -> PlotView:
@@ -267,7 +254,7 @@ def plot_views(curves: Curves, frame: Frame) -> tuple[tuple[PlotView, ...], tupl
     tilt = curves.reach("/plots/inclination")
     tilted = tilt[1] > 0.05 and (frame.sun or tilt[1] - tilt[0] > 0.05)
     shown.append(view("/plots/inclination" if tilted else "/plots/eccentricity"))
-    shown += angle_views(curves, view)
+    shown += angle_views(curves, view) if steers else []
     shown.append(view("/plots/thrust"))
     base = {
         "/plots/distance",

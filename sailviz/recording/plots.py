@@ -76,7 +76,7 @@ def plots_of(first: Run, frame: Frame) -> list[Plot]:
         plots.append(
             Plot(
                 "/plots/altitude",
-                "Altitude [km]: h above the surface, a mean over the orbit",
+                "Altitude h and semi-major axis less radius a [km]",
                 ("h", "a"),
                 look.SERIES[:2],
                 lambda run: (
@@ -112,7 +112,7 @@ def plots_of(first: Run, frame: Frame) -> list[Plot]:
             "Pitch and cone angle [deg]",
             ("pitch", "cone"),
             (look.PITCH, look.CONE),
-            lambda run: degrees(run.attitude.pitch, run.attitude.cone),
+            lambda run: degrees(run.attitude.pitch, np.where(run.thrust.magnitude > 0, run.attitude.cone, np.nan)),
         ),
         Plot("/plots/clock", "Clock angle [deg]", ("clock",), (look.CLOCK,), lambda run: degrees(run.attitude.clock)),
         Plot(

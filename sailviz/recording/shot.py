@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import copy
+import io
 import os
 import socket
 import subprocess
@@ -10,16 +12,18 @@ import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Self
 
 import numpy as np
+
 from sailviz.errors import RecordingError
-from sailviz.recording.blueprint import all_views, blueprint, find, short_names
-from sailviz.recording.layout import Layout
 from sailviz.recording.reader import read
 
 PACKAGES = "libvulkan1 mesa-vulkan-drivers"
 START, SETTLE = 60.0, 25.0  # s to wait for the viewer, and for a picture that no longer changes
 AGREE = 3  # frames in a row that must be the same
+BAR = 37  # pixels of the empty bar that a hidden menu leaves
+FRAME = (7, 34)  # pixels of the window round a view that fills it, the bar apart
 
 
 @dataclass(frozen=True)
@@ -40,114 +44,120 @@ def picture(path, png, *, view: str | None = None, at=1.0, size=(1600, 900), pan
     at : fraction of the run, or "start", "end"; panels : False leaves out the menu and the time panel
     Raises RecordingError where there is no such view, no Vulkan, or no viewer.
     """
+    if view is not None:
+        size, panels = (size[0] + FRAME[0], size[1] + FRAME[1]), False
     with Studio(path, size=size, panels=panels) as studio:
         return studio.shoot(png, view=view, at=at)
 
 
 class Studio:
-    """One headless viewer for many pictures of one recording."""
+    """One headless viewer for many pictures of one recording: `with Studio("orbit.rrd") as studio: studio.shoot("a.png")`."""
 
     def __init__(self, path, *, size=(1600, 900), panels: bool = True):
-        self._path, self._size, self._panels = Path(path).resolve(), tuple(size), panels
-        recording = read(self._path)
-        text = recording["/scene"]["layout"][0] if recording.contract else ""
-        self._layout = Layout.from_json(text) if text else None
-        self._application = recording.application_id
-        self._timeline = None
+        read(path)  # says in one sentence what cannot be shown
+        self._path, self._panels = Path(path).resolve(), panels
+        self._size = (int(size[0]), int(size[1]) + (0 if panels else BAR))
+        self._client = None
+
+    def __enter__(self) -> Self:
+        check_vulkan()
+        self._scratch = tempfile.TemporaryDirectory(prefix="sailviz-")
+        self._process, port = start_viewer(self._path, self._size, self._scratch.name)
+        try:
+            state = self._wait_for_viewer(f"rerun+http://127.0.0.1:{port}/proxy")
+        except BaseException:
+            self._stop()
+            raise
+        recording = next(r for r in state.recordings if r.store_id == state.active_recording)
+        timelines = {timeline.name: timeline for timeline in recording.timelines}
+        self._timeline = timelines[recording.current_timeline]
+        self._blueprint = self._client.get_blueprint().blueprint
+        self._shown = None
+        return self
+
+    def _wait_for_viewer(self, url: str):
+        from rerun.experimental import ViewerClient
+
+        started = time.monotonic()
+        while time.monotonic() - started < START:
+            if self._process.poll() is not None:
+                raise RecordingError(f"the viewer ended at once; it may want the packages {PACKAGES}")
+            with contextlib.suppress(Exception):  # not up yet
+                self._client = self._client or ViewerClient.connect(url)
+                state = self._client.get_state()
+                if state.active_recording and not state.loading and any(r.timelines for r in state.recordings):
+                    return state
+            time.sleep(0.05)
+        raise RecordingError(f"the viewer did not show {self._path} within {START:.0f} s")
 
     @property
     def views(self) -> list[str]:
-        """Names of the views that can be shot; none for a recording by another application."""
-        return short_names(all_views(self._layout)) if self._layout else []
+        """Names of the views of the recording, without what stands in brackets."""
+        return sorted(name.split(" (")[0].split(" [")[0] for name in self._names())
 
-    def __enter__(self) -> Studio:
-        check_vulkan()
-        from rerun.experimental import ViewerClient
-
-        self._scratch = tempfile.TemporaryDirectory(prefix="sailviz-")
-        self._process, port = start_viewer(self._path, self._size, self._scratch.name)
-        started = time.monotonic()
-        self._client = None
-        while True:
-            if self._process.poll() is not None:
-                self._stop()
-                raise RecordingError(f"the viewer ended at once; headless pictures need Vulkan: apt-get install {PACKAGES}")
-            try:
-                self._client = self._client or ViewerClient.connect(f"rerun+http://127.0.0.1:{port}/proxy")
-                state = self._client.get_state()
-                if state.active_recording and not state.loading and any(r.timelines for r in state.recordings):
-                    break
-            except Exception:
-                pass  # not up yet
-            if time.monotonic() - started > START:
-                self._stop()
-                raise RecordingError(f"the viewer did not show {self._path} within {START:.0f} s")
-            time.sleep(0.05)
-        recording = next(r for r in state.recordings if r.store_id == state.active_recording)
-        self._timelines = {timeline.name: timeline for timeline in recording.timelines}
-        self._timeline = self._timelines[self._layout.timeline if self._layout else recording.current_timeline]
-        self._shown = (None, None)
-        return self
+    def _names(self) -> dict[str, str]:
+        """Name of each view -> its id in the blueprint."""
+        parts = {path: part["ViewBlueprint"] for path, part in self._blueprint.items() if "ViewBlueprint" in part}
+        return {part.get("display_name", path): path.rsplit("/", 1)[-1] for path, part in parts.items()}
 
     def __exit__(self, *_) -> None:
         self._stop()
 
     def shoot(self, png, *, view: str | None = None, at=1.0, active: str | None = None) -> PictureReport:
-        """Take a picture of the window, or of one view alone; `active` is the tab in front."""
+        """Take a picture of the window, or of one view alone; `active` is the start of the name of the tab in front."""
         started = time.monotonic()
-        self._show(view, active)
+        identity = self._show(view, active)
         self._go(at)
-        name = None
-        if view is not None:
-            name = next((v.view_id for v in self._client.get_state().views if v.name.lower().startswith(view.lower())), None)
-            if name is None:
-                raise RecordingError(f"{self._path} has no view {view}")
-        image = self._settled(name)
+        image = self._settled(identity)
+        if identity is None and not self._panels:
+            image = without_bar(image)
         try:
             Path(png).write_bytes(image)
         except OSError as error:
             raise RecordingError(f"cannot write the picture {png}: {error.strerror.lower()}") from None
         reports = [(v.name, r) for v in self._client.get_state().views for r in v.reports]
-        sorted_out = {
-            severity: tuple(f"{name}: {r.summary}" for name, r in reports if (r.severity == "error") == (severity == "error"))
-            for severity in ("error", "warning")
-        }
+        errors = tuple(f"{name}: {r.summary}" for name, r in reports if r.severity == "error")
+        warnings = tuple(f"{name}: {r.summary}" for name, r in reports if r.severity != "error")
         width, height = (int.from_bytes(image[start : start + 4], "big") for start in (16, 20))
-        seconds = time.monotonic() - started
-        return PictureReport(Path(png), (width, height), sorted_out["error"], sorted_out["warning"], seconds)
+        return PictureReport(Path(png), (width, height), errors, warnings, time.monotonic() - started)
 
-    def _show(self, view: str | None, active: str | None) -> None:
-        """Lay the window out afresh where another view, tab or no panels are wanted."""
-        wanted = (view, active)
-        if wanted == self._shown and self._panels:
-            return
-        if self._layout is None:
-            if view is not None:
-                return  # a stranger's layout is taken as it is
-            return
-        try:
-            for name in (view, active):
-                if name is not None:
-                    find(all_views(self._layout), name)
-        except KeyError as error:
-            raise RecordingError(f"{self._path}: {error.args[0]}") from None
-        made = Path(self._scratch.name) / f"layout{time.monotonic_ns()}.rbl"
-        blueprint(self._layout, active=active, only=view, panels=self._panels).save(self._application, str(made))
-        before = {v.view_id for v in self._client.get_state().views}
-        self._client.open(str(made))
-        started = time.monotonic()
-        while time.monotonic() - started < SETTLE:
-            if not before & {v.view_id for v in self._client.get_state().views}:
-                break
-            time.sleep(0.05)
-        self._shown = wanted
+    def _find(self, name: str) -> str:
+        for title, identity in self._names().items():
+            if title.lower().startswith(name.lower()):
+                return identity
+        raise RecordingError(f"{self._path} has no view {name}; it has {', '.join(self.views)}")
+
+    def _show(self, view: str | None, active: str | None) -> str | None:
+        """Change the viewer's blueprint to what is wanted -> the id of the view that is alone."""
+        alone = self._find(view) if view else None
+        front = self._find(active) if active else None
+        wanted = (alone, front)
+        if wanted != (self._shown or (None, None)) or (self._shown is None and not self._panels):
+            changed = copy.deepcopy(self._blueprint)
+            if not self._panels:
+                for panel in ("top_panel", "time_panel"):
+                    part = changed.setdefault(f"/{panel}", {})
+                    part.setdefault("TimePanelBlueprint" if panel == "time_panel" else "PanelBlueprint", {})[
+                        "state"
+                    ] = "Hidden"
+            if alone:
+                changed["/viewport"]["ViewportBlueprint"]["maximized"] = alone
+            for part in changed.values():
+                container = part.get("ContainerBlueprint", {})
+                if f"view/{front}" in container.get("contents", ()):
+                    container["active_tab"] = f"view/{front}"
+            self._client.set_blueprint(changed, of="recording")
+            self._shown = wanted
+        return alone
 
     def _go(self, at) -> None:
         """Put the time cursor at a fraction of the run."""
         try:
             fraction = {"start": 0.0, "end": 1.0}[at] if isinstance(at, str) else float(at)
         except (KeyError, ValueError):
-            raise RecordingError(f"a picture is taken at a fraction of the run, 'start' or 'end', not at {at!r}") from None
+            raise RecordingError(
+                f"a picture is taken at a fraction of the run, 'start' or 'end', not at {at!r}"
+            ) from None
         timeline = self._timeline
         value = int(timeline.start + (timeline.end - timeline.start) * min(max(fraction, 0.0), 1.0))
         place = {
@@ -193,11 +203,23 @@ def start_viewer(path: Path, size, scratch: str):
     return process, port
 
 
+def without_bar(image: bytes) -> bytes:
+    """A picture of the window without the empty bar at its top."""
+    from PIL import Image
+
+    window = Image.open(io.BytesIO(image))
+    out = io.BytesIO()
+    window.crop((0, BAR, *window.size)).save(out, "PNG")
+    return out.getvalue()
+
+
 def has_vulkan() -> bool:
     """Whether a Vulkan loader and at least one driver are installed."""
     from ctypes.util import find_library
 
-    loader = find_library("vulkan") or any(Path(p).exists() for p in ("/usr/lib/libvulkan.so.1", "/usr/lib64/libvulkan.so.1"))
+    loader = find_library("vulkan") or any(
+        Path(p).exists() for p in ("/usr/lib/libvulkan.so.1", "/usr/lib64/libvulkan.so.1")
+    )
     homes = ("/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d", "/usr/local/share/vulkan/icd.d")
     drivers = any(next(Path(home).glob("*.json"), None) for home in homes if Path(home).is_dir())
     named = os.environ.get("VK_ICD_FILENAMES") or os.environ.get("VK_DRIVER_FILES")

@@ -91,8 +91,8 @@ def event_columns(events: list[Event]):
     )
 
 
-def scene(setting, *, rows: int, complete: bool, ended: str, layout: str) -> rr.DynamicArchetype:
-    """The static entity /scene. `layout` is the JSON from which the views were laid out."""
+def scene(setting, *, rows: int, complete: bool, ended: str) -> rr.DynamicArchetype:
+    """The static entity /scene."""
     craft = setting.craft
     sizes = {"craft_side_m": craft.side, "craft_tethers": craft.tethers, "craft_tether_length_m": craft.tether_length}
     values = {
@@ -112,7 +112,6 @@ def scene(setting, *, rows: int, complete: bool, ended: str, layout: str) -> rr.
         "rows": int(rows),
         "complete": bool(complete),
         "ended": ended,
-        "layout": layout,
     }
     return rr.DynamicArchetype(
         archetype("/scene"), components={name: pa.array([value]) for name, value in values.items()}

@@ -22,8 +22,8 @@ from sailviz.run import Reference, Run
 
 STRIP = 4  # drawn rows in one piece of the trail
 LADDER = 12  # osculating orbits that show a long descent
-NIGHT_CAPS = zip((98, 95, 92, 89, 86, 83, 80), (84, 92, 100, 108, 116, 120, 120), strict=True)
-NIGHT_CAPS = tuple((np.radians(angle), alpha) for angle, alpha in NIGHT_CAPS)  # nested shells make a soft terminator
+NIGHT_EDGES = np.radians(np.linspace(100, 78, 16))  # half-angles of nested shells: together a soft terminator
+NIGHT_ALPHA = 56
 HALO = ((1.012, 80), (1.025, 48), (1.042, 28), (1.065, 14))  # radius, alpha
 
 
@@ -174,8 +174,11 @@ class World:
             pen.scale("/world/craft/body/tether", layout.tether_size)
         pen.scale("/world/craft/thrust", layout.thrust_scale)
         pen.scale("/world/craft/velocity", look.VELOCITY_LENGTH * radius)
-        height = 0.16 if self._planet else look.LABEL_HEIGHT
-        pen.label("/world/craft/name", self._setting.craft.label or "craft", look.CRAFT, (0.0, 0.0, height * radius))
+        name = self._setting.craft.label or "craft"
+        if self._planet:  # outwards, so that it does not lie on the planet
+            pen.label("/world/rtn/name", name, look.CRAFT, (0.17 * radius, 0.0, 0.0))
+        else:
+            pen.label("/world/craft/name", name, look.CRAFT, (0.0, 0.0, look.LABEL_HEIGHT * radius))
 
 
 def draw_stars(pen: Pen, path: str, radius: float, count: int = 1100) -> None:
@@ -213,20 +216,20 @@ def draw_planet(pen: Pen, path: str, name: str, dimmed: bool = False) -> None:
     pen.static(f"{path}/ball", rr.Asset3D(contents=glb, media_type="model/gltf-binary", **more))
 
 
-def draw_air(pen: Pen, path: str) -> None:
-    """A halo: the far sides of nested shells."""
+def draw_air(pen: Pen, path: str, halo=HALO) -> None:
+    """A halo: the far sides of nested shells. halo : pairs of radius and alpha."""
     ball, _ = meshes.sphere()
-    for k, (radius, alpha) in enumerate(HALO):
+    for k, (radius, alpha) in enumerate(halo):
         shell = meshes.Mesh(radius * ball.vertices, ball.faces, ball.normals)
         pen.mesh(f"{path}/shell{k}", shell, [*look.AIR, alpha], shaded=False, side="back")
 
 
 def draw_night(pen: Pen) -> None:
     """Shells over the night side and the umbra, +z away from the Sun, and an arrow of sunlight."""
-    for k, (half_angle, alpha) in enumerate(NIGHT_CAPS):
+    for k, half_angle in enumerate(NIGHT_EDGES):
         shell = meshes.cap(half_angle)
-        lifted = meshes.Mesh((1.0035 + 0.001 * k) * shell.vertices, shell.faces, shell.normals)
-        pen.mesh(f"/world/night/shell{k}", lifted, [*look.NIGHT, alpha], shaded=False)
+        lifted = meshes.Mesh((1.0035 + 0.0006 * k) * shell.vertices, shell.faces, shell.normals)
+        pen.mesh(f"/world/night/shell{k}", lifted, [*look.NIGHT, NIGHT_ALPHA], shaded=False)
     pen.mesh("/world/night/umbra", meshes.tube(0.0, 2.6, 1.0, 1.0, 96), look.UMBRA, shaded=False)
     pen.static(
         "/world/night/sunlight",

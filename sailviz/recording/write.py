@@ -190,9 +190,7 @@ class Recorder:
         return Event(name, float(last.time[0]), np.concatenate([last.position[0], last.velocity[0], last.mass]))
 
     def _write_scene(self, complete: bool) -> None:
-        scene = truth.scene(
-            self._setting, rows=self._rows, complete=complete, ended=self._ended, layout=self._drawing.layout_json()
-        )
+        scene = truth.scene(self._setting, rows=self._rows, complete=complete, ended=self._ended)
         self._stream.log("/scene", scene, static=True)
 
     def _why(self, error: BaseException) -> str:

@@ -1,0 +1,42 @@
+"""sailviz: trajectories of spacecraft without propellant, computed, recorded and replayed.
+
+    import sailviz
+    scene = sailviz.load_scene("displaced/circular")
+    run = sailviz.simulate(scene)
+    sailviz.record(run, "circular.rrd")
+
+The verbs are loaded on first use, so that `import sailviz` costs next to nothing. SI and radians throughout.
+"""
+
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+
+try:
+    __version__ = version("sailviz")
+except PackageNotFoundError:  # run from a folder that was never installed
+    __version__ = "0+unknown"
+
+_WHERE = {
+    "load_scene": "sailviz.scene",
+    "Scene": "sailviz.scene",
+    "simulate": "sailviz.simulate",
+    "simulate_blocks": "sailviz.simulate",
+    "Run": "sailviz.run",
+    "record": "sailviz.recording",
+    "read": "sailviz.recording",
+    "Recording": "sailviz.recording",
+    "SceneError": "sailviz.errors",
+    "PropagationError": "sailviz.errors",
+    "RecordingError": "sailviz.errors",
+}
+__all__ = [*_WHERE, "__version__"]
+
+
+def __getattr__(name):
+    if name not in _WHERE:
+        raise AttributeError(f"module 'sailviz' has no attribute {name!r}")
+    return getattr(import_module(_WHERE[name]), name)
+
+
+def __dir__():
+    return sorted(__all__)

@@ -1,0 +1,87 @@
+"""Numbers that a scene may expect of its run, by name: one table, read by the scene file's check and by the run's.
+
+Each is a function of a Run giving one value per row, in SI.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sailviz.run import Run
+from sailviz.units import UNITS, spelled
+
+
+def _distance(run: Run):
+    return np.linalg.norm(run.position, axis=1)
+
+
+def _energy(run: Run):
+    return np.sum(run.velocity**2, axis=1) / 2 - run.setting.body.mu / _distance(run)
+
+
+def _momentum(run: Run):
+    return np.linalg.norm(np.cross(run.position, run.velocity), axis=1)
+
+
+def _flight_path(run: Run):
+    radial = np.sum(run.position * run.velocity, axis=1) / _distance(run)
+    return np.arctan2(radial, _momentum(run) / _distance(run))
+
+
+def _longitude(run: Run):
+    """Unwrapped, so that it counts revolutions; from the first row of the run or block."""
+    return np.unwrap(np.arctan2(run.position[:, 1], run.position[:, 0]))
+
+
+# name -> (dimension, values of a run)
+QUANTITIES = {
+    "time": ("time", lambda run: run.time),
+    "radius": ("length", _distance),
+    "altitude": ("length", lambda run: _distance(run) - run.setting.body.radius),
+    "elevation": ("angle", lambda run: np.arctan2(run.position[:, 2], np.hypot(run.position[:, 0], run.position[:, 1]))),
+    "height": ("length", lambda run: run.position[:, 2]),
+    "longitude": ("angle", _longitude),
+    "speed": ("speed", lambda run: np.linalg.norm(run.velocity, axis=1)),
+    "flight_path_angle": ("angle", _flight_path),
+    "energy": ("specific_energy", _energy),
+    "angular_momentum": ("specific_angular_momentum", _momentum),
+    "angular_momentum_z": ("specific_angular_momentum", lambda run: np.cross(run.position, run.velocity)[:, 2]),
+    "mass": ("mass", lambda run: run.mass),
+    "semi_major_axis": ("length", lambda run: run.elements.semi_major_axis),
+    "eccentricity": ("none", lambda run: run.elements.eccentricity),
+    "inclination": ("angle", lambda run: run.elements.inclination),
+    "raan": ("angle", lambda run: run.elements.raan),
+    "true_anomaly": ("angle", lambda run: run.elements.true_anomaly),
+    "periapsis": ("length", lambda run: run.elements.semi_major_axis * (1 - run.elements.eccentricity)),
+    "apoapsis": ("length", lambda run: run.elements.semi_major_axis * (1 + run.elements.eccentricity)),
+    "pitch": ("angle", lambda run: run.attitude.pitch),
+    "cone": ("angle", lambda run: run.attitude.cone),
+    "clock": ("angle", lambda run: run.attitude.clock),
+    "thrust_acceleration": ("acceleration", lambda run: run.thrust.magnitude),
+    "thrust_factor": ("none", lambda run: run.environment.get("thrust_factor", np.ones(len(run)))),
+}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A quantity in the unit in which a scene writes it."""
+
+    name: str  # as written, e.g. "radius_au"
+    stem: str  # e.g. "radius"
+    unit: str
+    factor: float  # SI per unit
+
+    def of(self, run: Run) -> np.ndarray:
+        """One value per row, in this unit. (n,)"""
+        return QUANTITIES[self.stem][1](run) / self.factor
+
+
+def spellings() -> dict[str, Quantity]:
+    """Every name that [[expect]] accepts."""
+    return {
+        name: Quantity(name, stem, unit, factor)
+        for stem, (dimension, _) in QUANTITIES.items()
+        for name, (unit, factor) in zip(spelled(stem, dimension), UNITS[dimension].items(), strict=True)
+    }

@@ -1,0 +1,21 @@
+"""Files that travel with the package: scenes and assets, found from an installed wheel and from a checkout alike."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+_PACKAGE = Path(__file__).parent
+
+
+def shipped_folder(kind: str) -> Path:
+    """Folder "scenes" or "assets": inside the package when installed, beside it in a checkout."""
+    inside = _PACKAGE / kind
+    return inside if inside.is_dir() else _PACKAGE.parent / kind
+
+
+@cache
+def shipped_scenes() -> dict[str, Path]:
+    """Name -> file of every shipped scene, e.g. "displaced/circular"."""
+    folder = shipped_folder("scenes")
+    return {path.relative_to(folder).with_suffix("").as_posix(): path for path in sorted(folder.glob("*/*.toml"))}

@@ -42,23 +42,22 @@ def arrange(layout: Layout) -> rrb.Container:
         rrb.Horizontal(close_view(layout.close_up), words, column_shares=[3, 2]),
         row_shares=[4, 3],
     )
-    right = [plot_view(plot) for plot in layout.plots]
-    shares = [plot.share for plot in layout.plots]
-    extra = [plot_view(plot) for plot in layout.environment]
-    if extra:
-        right.append(rrb.Tabs(*extra, active_tab=0) if len(extra) > 1 else extra[0])
-        shares.append(2.6)
+    right, shares = [], []
+    for slot in layout.slots:
+        plots = [plot_view(plot) for plot in slot.plots]
+        right.append(plots[0] if len(plots) == 1 else rrb.Tabs(*plots, active_tab=0))
+        shares.append(slot.share)
     if layout.lanes:
         lanes = [f"+ /phase/{lane}" for lane in layout.lanes]
         right.append(rrb.StateTimelineView(origin="/phase", contents=lanes, name="Phases", time_view=WHOLE_TIME))
-        shares.append(1.0 + 0.7 * len(lanes))
+        shares.append(layout.lane_share)
     return rrb.Horizontal(left, rrb.Vertical(*right, row_shares=shares), column_shares=[5, 3])
 
 
 def space_view(layout: Layout, camera: Camera) -> rrb.Spatial3DView:
     contents = ["+ /world/**", *(f"- /world/planets/{name}/**" for name in layout.hidden)]
     if camera.name == "Follow":
-        contents.append("- /world/names/**")  # labels are never hidden by what is in front of them
+        contents += ["- /world/names/**", "- /world/night/umbra"]  # labels show through; the umbra's wall would be near
     return rrb.Spatial3DView(
         name=camera.name,
         origin=camera.origin,

@@ -138,9 +138,9 @@ class SailCloseUp:
         ends = [on_circle(np.zeros((len(samples), 1))), center, on_circle(clock[:, None])]
         pen.strips("/sail/clock/spokes", index, np.concatenate(ends, 1))
         pen.strips("/sail/clock/arc", index, on_circle(clock[:, None] * np.linspace(0, 1, 37)))
-        # in the middle of the arc, but on the far side of the circle where the arc is too short for two labels
-        middle = clock / 2 + np.pi * np.clip(1 - clock / (0.5 * np.pi), 0, 1)
-        place = on_circle(middle[:, None])[:, 0] * [1.0, 1.15, 1.15]
+        # where the angle starts, but on the far side of the circle where the normal's own label is near
+        near = np.clip(1 - np.minimum(clock, 2 * np.pi - clock) / np.radians(60), 0, 1)
+        place = on_circle((np.pi * near)[:, None])[:, 0] * [1.0, 1.15, 1.15]
         pen.labels("/sail/clock/name", index, place, angle_texts("clock", clock))
 
     def size(self, layout: Layout) -> None:
@@ -188,7 +188,7 @@ class TetherCloseUp:
         arrows = np.broadcast_to(root[:, None, :], (count, ARROWS, 3))
         self._add_many("/sail/body/force/arrows", index, arrows, np.broadcast_to(down, arrows.shape))
         texts = [f"drag {acceleration_text(a)}" if a > 0 else "no drag" for a in size.tolist()]
-        pen.labels("/sail/force_name", index, 0.5 * TETHER * -normal + 7.2 * unit(thrust), texts)
+        pen.labels("/sail/force_name", index, 0.5 * TETHER * -normal + 9.4 * unit(thrust), texts)
         origins = 9.0 * velocity[:, None, :] + np.array([[0, y, z] for y in (-1.5, 1.5) for z in (-3, -5.5, -8, -10.5)])
         self._add_many("/sail/flow", index, np.broadcast_to(-3.4 * velocity[:, None, :], origins.shape), origins)
 

@@ -12,6 +12,13 @@ from sailviz.recording.plots import Curves, nice_range
 from sailviz.recording.samples import Frame, Samples
 from sailviz.run import Run, Setting
 
+ALWAYS = ("distance", "altitude", "inclination", "eccentricity", "angles", "clock", "thrust")
+ALWAYS = tuple(f"/plots/{name}" for name in ALWAYS)
+COLUMN, FURNITURE, NUMBER = (
+    640.0,
+    48.0,
+    15.0,
+)  # pixels: the plots' column on a laptop, title and axis, a number on the axis
 DEPARTING = 0.02  # relative change of distance below which an orbit counts as closed
 
 
@@ -37,6 +44,14 @@ class PlotView:
 
 
 @dataclass(frozen=True)
+class Slot:
+    """A place in the column of plots; several plots share it as tabs."""
+
+    plots: tuple[PlotView, ...]
+    share: float
+
+
+@dataclass(frozen=True)
 class Layout:
     """Everything from which a blueprint is made."""
 
@@ -48,9 +63,9 @@ class Layout:
     close_thrust_scale: float  # of the close-up, per sqrt(m/s2)
     cameras: tuple[Camera, ...]
     close_up: Camera
-    plots: tuple[PlotView, ...]
-    environment: tuple[PlotView, ...]
+    slots: tuple[Slot, ...]
     lanes: tuple[str, ...]
+    lane_share: float
     hidden: tuple[str, ...]  # entities that the system view leaves out
     tail: float  # s of the bright part of the trail
     past: float  # s of the trail, 0 for all of it
@@ -113,6 +128,8 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
     names = name_views(views, setting, frame, sail, tether)
     timelines = ("sim_time", "step") if setting.epoch is None else ("utc", "sim_time", "step")
     shown, environment = plot_views(curves, frame, setting.craft.kind not in ("plasma-brake", "none"))
+    lanes = tuple(lane for lane, changes in curves.changes.items() if changes)
+    slots, lane_share = column(shown, environment, lanes)
     return Layout(
         sun=frame.sun,
         scene_radius=radius,
@@ -122,9 +139,9 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
         close_thrust_scale=8.0 / np.sqrt(extents.thrust) if extents.thrust > 0 else 1.0,
         cameras=names,
         close_up=close_up_camera(setting, middle),
-        plots=shown,
-        environment=environment,
-        lanes=tuple(lane for lane, changes in curves.changes.items() if changes),
+        slots=slots,
+        lanes=lanes,
+        lane_share=lane_share,
         hidden=tuple(hidden),
         tail=tail,
         past=0.86 * revolution if closed else 0.0,
@@ -153,7 +170,7 @@ def revolution_time(row: Run) -> float:
 def about_sun(radius: float, height: float, setting: Setting) -> list[Camera]:
     """Cameras of a scene round the Sun: from outside, from the pole, along with the craft."""
     lifted = height > 0.12 * radius
-    outside = np.array([0.22, -1.72, 0.80] if lifted else [0.1, -1.50, 0.95]) * radius
+    outside = np.array([0.23, -1.88, 0.86] if lifted else [0.1, -1.60, 1.01]) * radius
     sail = setting.craft.kind == "solar-sail"
     follow = np.array([-0.42, 0.50, 0.26] if sail else [0.30, -0.62, 0.26]) * radius
     return [
@@ -167,8 +184,8 @@ def about_planet(radius: float, middle: Samples, setting: Setting, frame: Frame)
     """Cameras of a scene round a planet: over it, along with the craft, along the orbit's pole."""
     sun = middle.run.bodies.get("Sun")
     pole = middle.axes[0, :, 2]
-    eye = cameras.over_planet(pole, None if sun is None else unit(sun[0])) * 2.5 * radius
-    above = pole if pole[2] >= 0 else -pole
+    eye = cameras.over_planet(pole, None if sun is None else unit(sun[0])) * 2.6 * radius
+    above = pole if (pole[2] if sun is None else pole @ unit(sun[0])) >= 0 else -pole  # the day side
     above = unit(above + 0.05 * middle.axes[0, :, 0]) * 2.6 * radius
     return [
         Camera(setting.body.name, "/", tuple(eye.tolist())),
@@ -228,8 +245,8 @@ def in_words(factor: float) -> str:
     return f"{float(f'{factor:.2g}'):.10g}"
 
 
-def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple[PlotView, ...], tuple[PlotView, ...]]:
-    """Which curves are shown, in which ranges: first those that every run has, then what the environment did.
+def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple[PlotView, ...], ...]:
+    """Which curves are shown: first those that every run has, then what the environment did.
 
     steers : whether the craft has angles that mean something
     """
@@ -238,8 +255,9 @@ def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple[PlotVi
     def view(path: str, **more) -> PlotView:
         plot = known[path]
         low, high = curves.reach(path)
-        low, high = nice_range(low, high, plot.from_zero)
         legend = "RightTop" if len(plot.names) > 1 else ""
+        if plot.from_zero:
+            low = min(low, 0.0)
         return PlotView(**{"title": plot.title, "paths": (path,), "low": low, "high": high, "legend": legend} | more)
 
     shown = []
@@ -247,7 +265,7 @@ def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple[PlotVi
         r_low, r_high = curves.ranges["/plots/distance:0"]
         a_low, a_high = curves.ranges.get("/plots/distance:1", (r_low, r_high))
         # the semi-major axis of an orbit close to escape is beyond all measure: it may leave the range
-        low, high = nice_range(max(min(r_low, a_low), 0.5 * r_low), min(max(r_high, a_high), 1.5 * r_high))
+        low, high = max(min(r_low, a_low), 0.5 * r_low), min(max(r_high, a_high), 1.5 * r_high)
         shown.append(view("/plots/distance", low=low, high=high, share=3.0))
     else:
         shown.append(view("/plots/altitude", share=3.0))
@@ -256,16 +274,7 @@ def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple[PlotVi
     shown.append(view("/plots/inclination" if tilted else "/plots/eccentricity"))
     shown += angle_views(curves, view) if steers else []
     shown.append(view("/plots/thrust"))
-    base = {
-        "/plots/distance",
-        "/plots/altitude",
-        "/plots/inclination",
-        "/plots/eccentricity",
-        "/plots/angles",
-        "/plots/clock",
-        "/plots/thrust",
-    }
-    environment = tuple(view(path) for path in known if path not in base)
+    environment = tuple(view(path) for path in known if path not in ALWAYS)
     return tuple(shown), environment
 
 
@@ -277,9 +286,30 @@ def angle_views(curves: Curves, view) -> list[PlotView]:
         return [view("/plots/angles", title=title, share=3.0)]
     low, high = min(pitch[0], clock[0]), max(pitch[1], clock[1])
     if high - low < 3 * max(pitch[1] - pitch[0], 30):
-        low, high = nice_range(low, high)
         paths = ("/plots/angles", "/plots/clock")
-        return [
-            view("/plots/angles", title="Pitch, cone and clock angle [deg]", paths=paths, low=low, high=high, share=3.0)
-        ]
+        title = "Pitch, cone and clock angle [deg]"
+        return [view("/plots/angles", title=title, paths=paths, low=low, high=high, share=3.0)]
     return [view("/plots/angles"), view("/plots/clock", share=2.0)]
+
+
+def column(shown, environment, lanes) -> tuple[tuple[Slot, ...], float]:
+    """The right column: which plots stand alone and which share a place as tabs, and the share of the lanes.
+
+    More than five rows are not readable on a laptop: then the plot of the orbit's shape goes behind the first.
+    """
+    slots = [Slot((plot,), plot.share) for plot in shown]
+    if environment:
+        slots.append(Slot(environment, 2.6))
+    lane_share = 1.3 + 0.7 * len(lanes) if lanes else 0.0
+    if len(slots) + bool(lanes) > 5:
+        slots[:2] = [Slot(slots[0].plots + slots[1].plots, slots[0].share)]
+    total = sum(slot.share for slot in slots) + lane_share
+    fitted = []
+    for slot in slots:
+        numbers = (COLUMN * slot.share / total - FURNITURE) / NUMBER
+        plots = []
+        for plot in slot.plots:
+            low, high = nice_range(plot.low, plot.high, numbers)
+            plots.append(replace(plot, low=low, high=high))
+        fitted.append(Slot(tuple(plots), slot.share))
+    return tuple(fitted), lane_share

@@ -51,7 +51,7 @@ OCEAN = [38, 84, 150]
 ROCK = [150, 140, 126]
 
 SERIES = ([100, 190, 255], [255, 176, 66], [98, 214, 160], [236, 124, 190], [190, 160, 255])
-HIGH, LOW = [100, 190, 255], [255, 112, 67]  # ends of the ramp that colours a descent
+HIGH, BETWEEN, LOW = [100, 190, 255], [206, 130, 226], [255, 112, 67]  # the ramp that colours a descent
 LANES = {
     "thrust": {"on": ("Thrust on", [190, 160, 255]), "off": ("Coast", [120, 136, 165])},
     "light": {"on": ("Sunlit", [255, 206, 84]), "off": ("Eclipse", [36, 46, 84])},

@@ -76,7 +76,7 @@ def plots_of(first: Run, frame: Frame) -> list[Plot]:
         plots.append(
             Plot(
                 "/plots/altitude",
-                "Altitude h and semi-major axis less radius a [km]",
+                "Altitude [km]",
                 ("h", "a"),
                 look.SERIES[:2],
                 lambda run: (
@@ -174,7 +174,8 @@ class Curves:
         dense = frame.turns > 60
         width = look.WIDTH["dense plot" if dense else "plot"]
         for plot in self.plots:
-            widths = [width] * len(plot.names)
+            # the later curve lies on top: thinner, so that an equal one below it still shows
+            widths = [width * (1.6 if k < len(plot.names) - 1 else 1.0) for k in range(len(plot.names))]
             style = rr.SeriesLines(names=list(plot.names), colors=[list(c) for c in plot.colors], widths=widths)
             pen.static(plot.path, style)
         for lane in self._lanes:
@@ -228,18 +229,21 @@ class Curves:
         return (min(low for low, _ in pairs), max(high for _, high in pairs)) if pairs else (0.0, 1.0)
 
 
-def nice_range(low: float, high: float, from_zero: bool = False) -> tuple[float, float]:
-    """A range with a margin, between round numbers. A constant stands in the middle of a range of a tenth of its size."""
-    if from_zero and low >= 0:
-        low = 0.0
+def nice_range(low: float, high: float, numbers: float = 4.0) -> tuple[float, float]:
+    """A range with a margin whose ends are round, such that the viewer writes at least two numbers on the axis if it can.
+
+    It writes multiples of a power of ten where there is room for them: `numbers` is how many fit. A constant stands in the
+    middle of a fifth of its size.
+    """
+    if high - low <= 1e-3 * max(abs(low), abs(high)):
+        half = 0.1 * max(abs(low), abs(high)) or 0.5
+        low, high = low - half, high + half
     span = high - low
-    if span <= 1e-3 * max(abs(low), abs(high)):
-        half = 0.05 * max(abs(low), abs(high)) or 0.5
-        low, high, span = low - half, high + half, 2 * half
-    step = 10 ** np.floor(np.log10(span / 4))
-    step *= next(m for m in (1, 2, 5, 10) if m * step >= span / 5)
-    bottom = np.floor((low - 0.04 * span) / step) * step
-    top = np.ceil((high + 0.04 * span) / step) * step
-    if low >= 0 and bottom < 0:
-        bottom = -0.04 * span if low > 0.04 * span or from_zero else -0.08 * span
-    return float(round(bottom, 12)), float(round(top, 12))
+    fine = 10.0 ** np.floor(np.log10(span))
+    coarse = fine if span <= numbers * fine else 10 * fine
+    for step in (coarse, fine):
+        bottom, top = np.floor(low / step + 1e-9) * step, np.ceil(high / step - 1e-9) * step
+        if span >= 0.45 * (top - bottom):
+            break  # not too much empty room
+    margin = 0.05 * (top - bottom)
+    return float(bottom - margin), float(top + margin)

@@ -22,8 +22,8 @@ from sailviz.run import Reference, Run
 
 STRIP = 4  # drawn rows in one piece of the trail
 LADDER = 12  # osculating orbits that show a long descent
-NIGHT_EDGES = np.radians(np.linspace(100, 78, 16))  # half-angles of nested shells: together a soft terminator
-NIGHT_ALPHA = 56
+NIGHT_EDGES = np.radians(np.linspace(100, 78, 24))  # half-angles of nested shells: together a soft terminator
+NIGHT_ALPHA = 38
 HALO = ((1.012, 80), (1.025, 48), (1.042, 28), (1.065, 14))  # radius, alpha
 
 
@@ -144,8 +144,9 @@ class World:
         """Colours by altitude from HIGH at the start to LOW on the ground; the root because a descent ends fast. (n,) int."""
         start = max(self._frame.origin_radius - 1, 1e-9)
         altitude = samples.run.elements.semi_major_axis / self._frame.unit - 1
-        down = np.sqrt(np.clip(1 - altitude / start, 0, 1))[:, None]
-        rgb = np.clip(factor * (np.array(look.LOW) * down + np.array(look.HIGH) * (1 - down)), 0, 255).astype(np.uint32)
+        down = np.sqrt(np.clip(1 - altitude / start, 0, 1))
+        stops = factor * np.array([look.HIGH, look.BETWEEN, look.LOW], float)
+        rgb = np.stack([np.interp(down, [0.0, 0.5, 1.0], stops[:, k]) for k in range(3)], 1).astype(np.uint32)
         return (rgb[:, 0] << 24) | (rgb[:, 1] << 16) | (rgb[:, 2] << 8) | 255
 
     def add_ladder(self, samples: Samples) -> None:
@@ -227,15 +228,15 @@ def draw_air(pen: Pen, path: str, halo=HALO) -> None:
 def draw_night(pen: Pen) -> None:
     """Shells over the night side and the umbra, +z away from the Sun, and an arrow of sunlight."""
     for k, half_angle in enumerate(NIGHT_EDGES):
-        shell = meshes.cap(half_angle)
-        lifted = meshes.Mesh((1.0035 + 0.0006 * k) * shell.vertices, shell.faces, shell.normals)
+        shell = meshes.cap(half_angle, 16, 64)
+        lifted = meshes.Mesh((1.0035 + 0.0004 * k) * shell.vertices, shell.faces, shell.normals)
         pen.mesh(f"/world/night/shell{k}", lifted, [*look.NIGHT, NIGHT_ALPHA], shaded=False)
     pen.mesh("/world/night/umbra", meshes.tube(0.0, 2.6, 1.0, 1.0, 96), look.UMBRA, shaded=False)
     pen.static(
         "/world/night/sunlight",
-        rr.Arrows3D(origins=[[0, 0, -1.55]], vectors=[[0, 0, 0.33]], colors=[look.SUN], radii=points(2.0)),
+        rr.Arrows3D(origins=[[0, 0, -1.36]], vectors=[[0, 0, 0.24]], colors=[look.SUN], radii=points(2.0)),
     )
-    pen.label("/world/night/sunlight/name", "sunlight", look.SUN, (0, 0, -1.66))
+    pen.label("/world/night/sunlight/name", "sunlight", look.SUN, (0, 0, -1.42))
 
 
 def draw_reference(pen: Pen, reference: Reference, length: float) -> None:

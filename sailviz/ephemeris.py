@@ -1,0 +1,95 @@
+"""Where the planets and the Sun are, offline: mean elements of the planets and the Sun's mean motion. For pictures and phasing.
+
+Frames: heliocentric ecliptic of J2000 for planets, geocentric equatorial of date for the Sun.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sailviz import elements as orbital
+from sailviz.constants import AU, DAY, MU_SUN
+
+J2000 = np.datetime64("2000-01-01T12:00:00", "ns")
+CENTURY = 36_525 * DAY
+
+# E. M. Standish, "Keplerian elements for approximate positions of the major planets", JPL, table 1 (1800-2050):
+# a au, e, i deg, mean longitude deg, longitude of perihelion deg, node deg; below each its rate per Julian century.
+# Errors there: 15-40 arcsec in longitude for the inner planets, up to 600 for Saturn. Earth is the Earth-Moon barycentre.
+_MEAN = {
+    "Mercury": (
+        (0.38709927, 0.20563593, 7.00497902, 252.25032350, 77.45779628, 48.33076593),
+        (0.00000037, 0.00001906, -0.00594749, 149472.67411175, 0.16047689, -0.12534081),
+    ),
+    "Venus": (
+        (0.72333566, 0.00677672, 3.39467605, 181.97909950, 131.60246718, 76.67984255),
+        (0.00000390, -0.00004107, -0.00078890, 58517.81538729, 0.00268329, -0.27769418),
+    ),
+    "Earth": (
+        (1.00000261, 0.01671123, -0.00001531, 100.46457166, 102.93768193, 0.0),
+        (0.00000562, -0.00004392, -0.01294668, 35999.37244981, 0.32327364, 0.0),
+    ),
+    "Mars": (
+        (1.52371034, 0.09339410, 1.84969142, -4.55343205, -23.94362959, 49.55953891),
+        (0.00001847, 0.00007882, -0.00813131, 19140.30268499, 0.44441088, -0.29257343),
+    ),
+    "Jupiter": (
+        (5.20288700, 0.04838624, 1.30439695, 34.39644051, 14.72847983, 100.47390909),
+        (-0.00011607, -0.00013253, -0.00183714, 3034.74612775, 0.21252668, 0.20469106),
+    ),
+    "Saturn": (
+        (9.53667594, 0.05386179, 2.48599187, 49.95424423, 92.59887831, 113.66242448),
+        (-0.00125060, -0.00050991, 0.00193609, 1222.49362201, -0.41897216, -0.28867794),
+    ),
+}
+PLANETS = tuple(_MEAN)
+
+
+def _seconds_since_j2000(epoch: np.datetime64) -> float:
+    return float((np.datetime64(epoch, "ns") - J2000) / np.timedelta64(1, "ns")) * 1e-9
+
+
+def planet_elements(name, seconds):
+    """(a m, e, i, raan, argument, mean anomaly rad) of a planet, each (n,), at seconds (n,) after J2000."""
+    values, rates = (np.array(row) for row in _MEAN[name])
+    a, e, i, longitude, perihelion, node = (values[:, None] + rates[:, None] * np.atleast_1d(seconds) / CENTURY)
+    angles = np.radians([i, node, perihelion - node, longitude - perihelion])
+    return a * AU, e, *angles
+
+
+def _eccentric_anomaly(mean, e):
+    """Kepler's equation by Newton from Danby's start; planets need six iterations at most."""
+    mean = np.remainder(mean + np.pi, 2 * np.pi) - np.pi
+    anomaly = mean + 0.85 * np.sign(np.sin(mean)) * e
+    for _ in range(10):
+        anomaly = anomaly - (anomaly - e * np.sin(anomaly) - mean) / (1 - e * np.cos(anomaly))
+    return anomaly
+
+
+def planet_position(name, epoch, time):
+    """Heliocentric position (n, 3) m, ecliptic of J2000, of a planet in PLANETS at times (n,) s after the epoch."""
+    a, e, i, node, argument, mean = planet_elements(name, _seconds_since_j2000(epoch) + np.asarray(time, dtype=float))
+    half = _eccentric_anomaly(mean, e) / 2
+    anomaly = 2 * np.arctan2(np.sqrt(1 + e) * np.sin(half), np.sqrt(1 - e) * np.cos(half))
+    return orbital.state(a, e, i, node, argument, anomaly, MU_SUN)[0]
+
+
+def planet_orbit(name, epoch=None, points=361):
+    """The planet's orbit as a closed curve (points, 3) m, with its elements at the epoch (J2000 without one)."""
+    seconds = 0.0 if epoch is None else _seconds_since_j2000(epoch)
+    a, e, i, node, argument, _ = planet_elements(name, seconds)
+    return orbital.state(a, e, i, node, argument, np.linspace(0, 2 * np.pi, points), MU_SUN)[0]
+
+
+def sun_position(epoch, time):
+    """Geocentric position (n, 3) m of the Sun, equator of date, at times (n,) s after the epoch.
+
+    Source: low-precision formulae of the Astronomical Almanac, section C: 0.01 deg between 1950 and 2050.
+    """
+    n = (_seconds_since_j2000(epoch) + np.asarray(time, dtype=float)) / DAY
+    g = np.radians(357.528 + 0.9856003 * n)
+    longitude = np.radians(280.460 + 0.9856474 * n + 1.915 * np.sin(g) + 0.020 * np.sin(2 * g))
+    obliquity = np.radians(23.439 - 0.0000004 * n)
+    distance = AU * (1.00014 - 0.01671 * np.cos(g) - 0.00014 * np.cos(2 * g))
+    direction = [np.cos(longitude), np.cos(obliquity) * np.sin(longitude), np.sin(obliquity) * np.sin(longitude)]
+    return (distance * np.array(direction)).T

@@ -1,0 +1,573 @@
+"""Scene -> Run: the one place where a scene becomes arrays.
+
+`plan` turns the scene's words into a Model, an initial state, a schedule of thrust factors and a list of events; then
+`simulate_blocks` lets the propagator fill block after block and derives from each what the recording shows.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import platform
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numba
+import numpy as np
+
+import sailviz
+from sailviz import elements as orbital
+from sailviz import ephemeris, frames
+from sailviz import steering as law
+from sailviz.constants import (
+    AU,
+    J2_EARTH,
+    MU_EARTH,
+    MU_SUN,
+    RADIUS_EARTH,
+    RADIUS_SUN,
+    ROTATION_EARTH,
+    STANDARD_GRAVITY,
+)
+from sailviz.describe import parameters_in_words
+from sailviz.design import displaced, spirals
+from sailviz.environment import ionosphere, solar_wind
+from sailviz.errors import Fault, PropagationError, SceneError
+from sailviz.propagate import dop853, dynamics
+from sailviz.propagate import events as happening
+from sailviz.propulsion import electric_sail
+from sailviz.propulsion.solar_sail import FILMS, Film
+from sailviz.run import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust, join
+from sailviz.scene import Scene
+
+BLOCK_ROWS = 8192
+DEFAULT_OUTPUTS = 1000
+BODIES = {
+    "sun": Body("Sun", MU_SUN, RADIUS_SUN),
+    "earth": Body("Earth", MU_EARTH, RADIUS_EARTH),
+}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A scene as the propagator sees it."""
+
+    scene: Scene
+    body: Body
+    position: np.ndarray  # (3,) m
+    velocity: np.ndarray  # (3,) m/s
+    mass: float  # kg
+    model: dynamics.Model
+    breaks: np.ndarray  # (k,) s, where the thrust factor or its table has a kink
+    factors: np.ndarray  # (k,) thrust factor from each break on
+    pressure: np.ndarray | None  # (k,) Pa at 1 au from each break on, where the wind is random
+    switches: tuple[tuple[float, str], ...]  # (time s, "thrust on" | "thrust off")
+    watch: happening.Watch
+    names: tuple[str, ...]  # of the watched events
+    design: object | None  # the design's result for starts that ask for one
+    keep: tuple  # compiled user functions must live as long as the plan
+    identity: str
+
+
+# ---------------------------------------------------------------- scene -> plan
+def plan(scene: Scene, steering=None, force=None) -> Plan:
+    """What a scene means. SceneError if it asks for something infeasible, TypeError for a bad user function."""
+    body = BODIES[scene.body] if isinstance(scene.body, str) else Body(*_custom_body(scene))
+    design = _design(scene)
+    position, velocity = _initial_state(scene, body, design)
+    device, device_parameters = _device(scene, design)
+    law_id, law_parameters, table = _steering(scene, design)
+    keep = []
+    user_steering = user_force = 0
+    if steering is not None:
+        user_steering, handle = dynamics.user_address(steering, "steering")
+        law_id, law_parameters, table = law.USER, (), None
+        keep.append(handle)
+    if force is not None:
+        user_force, handle = dynamics.user_address(force, "force")
+        keep.append(handle)
+    breaks, factors, pressure, switches = _schedule(scene, table)
+    names, watch = _watched(scene, body)
+    earth = scene.body == "earth"
+    model = dynamics.model(
+        body.mu,
+        device=device,
+        device_parameters=device_parameters,
+        steering=law_id,
+        steering_parameters=law_parameters,
+        held=getattr(scene.steering, "interpolation", "") == "hold",
+        table=table,
+        j2_strength=1.5 * J2_EARTH * MU_EARTH * RADIUS_EARTH**2 if scene.environment.j2 else 0.0,
+        surface_radius=body.radius,
+        rotation=ROTATION_EARTH if earth and scene.environment.corotation else 0.0,
+        plasma=_plasma(scene, body),
+        user_steering=user_steering,
+        user_force=user_force,
+    )
+    return Plan(
+        scene,
+        body,
+        position,
+        velocity,
+        scene.device.mass or 1.0,
+        model,
+        breaks,
+        factors,
+        pressure,
+        switches,
+        watch,
+        names,
+        design,
+        tuple(keep),
+        _identity(scene, steering, force),
+    )
+
+
+def _custom_body(scene):
+    return scene.body.name, scene.body.mu, scene.body.radius
+
+
+def _identity(scene, *functions) -> str:
+    """Hash of the scene and of the user's functions."""
+    digest = hashlib.sha256(scene.identity().encode())
+    for function in functions:
+        if function is not None:
+            code = getattr(function, "py_func", getattr(function, "__wrapped__", None))
+            digest.update(code.__code__.co_code + repr(code.__code__.co_consts).encode() if code else b"cfunc")
+    return digest.hexdigest()[:16]
+
+
+def _film(scene) -> Film:
+    film = scene.device.film
+    if isinstance(film, str):
+        return FILMS[film]
+    values = film.model_dump()
+    return Film(**values) if "b1" in values else Film.from_optics(**values)
+
+
+def _design(scene):
+    """The closed form behind a start "on the designed orbit"; SceneError where it does not exist."""
+    start = scene.start
+    if start.kind == "displaced":
+        device = "electric-sail" if scene.device.kind == "electric-sail" else _film(scene)
+        found = displaced.circular(start.radius, start.elevation, start.rate_ratio, device)
+    elif start.kind == "spiral":
+        found = spirals.logarithmic(
+            _film(scene).lightness(_sail_strength(scene, None)),
+            scene.steering.pitch * np.sign(np.sin(scene.steering.clock)),
+            _film(scene),
+        )
+    else:
+        return None
+    if not found.feasible:
+        raise SceneError([Fault("start", f"this orbit is infeasible: {found.reason}.")], scene.source)
+    return found
+
+
+def _initial_state(scene, body, design):
+    start = scene.start
+    if start.kind == "cartesian":
+        return np.array(start.position), np.array(start.velocity)
+    if start.kind == "displaced":
+        return displaced.state(start.radius, start.elevation, start.rate_ratio, start.azimuth)
+    if start.kind == "spiral":
+        return design.state(start.radius, start.azimuth, body.mu)
+    if start.kind == "circular":
+        radius = start.radius if start.radius is not None else body.radius + start.altitude
+        shape = (radius, 0.0, start.inclination, start.raan, 0.0, start.argument_of_latitude)
+    else:
+        shape = (
+            start.semi_major_axis,
+            start.eccentricity,
+            start.inclination,
+            start.raan,
+            start.argument,
+            start.true_anomaly,
+        )
+    position, velocity = orbital.state(*shape, body.mu)
+    if not np.isfinite(position).all() or np.linalg.norm(position) <= body.radius:
+        raise SceneError([Fault("start", f"this point is not above the surface of the {body.name}.")], scene.source)
+    return position, velocity
+
+
+def _sail_strength(scene, design) -> float:
+    """Characteristic acceleration, m/s2, of either sail."""
+    device = scene.device
+    if device.characteristic_acceleration == "as designed":
+        return float(design.characteristic_acceleration)
+    if device.characteristic_acceleration is not None:
+        return device.characteristic_acceleration
+    if device.kind == "electric-sail":
+        return float(
+            electric_sail.characteristic_acceleration(
+                device.tethers,
+                device.tether_length,
+                device.voltage,
+                device.mass,
+                device.wind_pressure,
+                device.wind_potential,
+            )
+        )
+    return _film(scene).characteristic_acceleration(
+        lightness=device.lightness_number, area=device.area, mass=device.mass
+    )
+
+
+def _device(scene, design):
+    """(id, parameters) for the right-hand side."""
+    device = scene.device
+    if device.kind == "solar-sail":
+        film = _film(scene)
+        strength = _sail_strength(scene, design) * AU**2 / film.total
+        return dynamics.SOLAR_SAIL, (strength, film.b1, film.b2, film.b3)
+    if device.kind == "electric-sail":
+        model = electric_sail.MODELS[device.model]
+        return dynamics.ELECTRIC_SAIL, (_sail_strength(scene, design), model, device.pitch_limit)
+    if device.kind == "plasma-brake":
+        return dynamics.PLASMA_BRAKE, (device.tether_length, device.voltage, device.wire_radius)
+    if device.kind == "thruster":
+        size = device.thrust if device.thrust is not None else device.acceleration
+        exhaust = device.specific_impulse
+        inverse = 0.0 if exhaust is None else 1.0 / (STANDARD_GRAVITY * exhaust)
+        return dynamics.THRUSTER, (size, float(device.thrust is not None), inverse)
+    return dynamics.NO_DEVICE, ()
+
+
+def _steering(scene, design):
+    """(id, parameters, table or None) for the right-hand side."""
+    steering = scene.steering
+    if steering is None:
+        return law.RADIAL, (), None
+    if steering.kind == "as designed":
+        return law.ORBITAL, law.direction_parameters(float(design.pitch), float(design.clock)), None
+    if steering.kind == "table":
+        table = np.column_stack([steering.time, steering.pitch, steering.clock])
+        return (law.TABLE_ORBITAL if steering.frame == "orbital" else law.TABLE_MERIDIAN), (), table
+    if steering.kind == "inertial":
+        return law.INERTIAL, tuple(frames.unit(steering.direction)), None
+    if steering.kind in ("orbital", "meridian"):
+        return law.LAWS[steering.kind], law.direction_parameters(steering.pitch, steering.clock), None
+    return law.LAWS[steering.kind], (), None
+
+
+def _plasma(scene, body):
+    profile = scene.environment.ionosphere
+    if profile is None:
+        return ()
+    value = profile.force_per_length if profile.kind == "exponential-force" else profile.density
+    return (
+        ionosphere.PROFILES[profile.kind],
+        profile.reference_altitude,
+        value,
+        profile.scale_height,
+        getattr(profile, "ion_mass", 0.0),
+        body.radius,
+    )
+
+
+def _schedule(scene, table):
+    """(breaks, factors, pressure or None, switches): the piecewise-constant thrust factor of the whole run."""
+    duration = scene.propagation.duration
+    wind = scene.environment.solar_wind
+    wind_times, wind_factors, pressures = np.zeros(1), np.ones(1), None
+    if wind.kind == "gamma":
+        wind_times, pressures = solar_wind.gamma_pressure(wind.shape, wind.scale, wind.redraw, duration, wind.seed)
+        reference = solar_wind.reference_pressure(wind.shape, wind.scale, wind.reference == "unbiased")
+        wind_factors = solar_wind.thrust_factor(pressures, reference)
+    intervals = scene.device.active
+    edges = [edge for pair in intervals or [] for edge in pair]
+    knots = [] if table is None else table[:, 0]
+    breaks = np.unique(np.concatenate([[0.0], wind_times, edges, knots]))
+    breaks = breaks[(breaks >= 0) & (breaks < duration)]
+    drawn = np.searchsorted(wind_times, breaks, side="right") - 1
+    on = np.ones(len(breaks), dtype=bool)
+    if intervals is not None:
+        on = np.array([any(a <= t < b for a, b in intervals) for t in breaks])
+    switches = tuple(
+        (time, word)
+        for pair in intervals or []
+        for time, word in zip(pair, ("thrust on", "thrust off"), strict=True)
+        if 0 < time <= duration
+    )
+    pressure = None if pressures is None else pressures[drawn]
+    return breaks, wind_factors[drawn] * on, pressure, switches
+
+
+_SENSE = {"up": 1, "down": -1, "both": 0}
+
+
+def _watched(scene, body):
+    """Names and Watch of the scene's events and of those that come with a device."""
+    names, rows = [], []
+    for event in scene.event:
+        sense = _SENSE[event.sense]
+        kind = {"radius": happening.RADIUS, "altitude": happening.RADIUS, "node": happening.NODE}.get(event.kind)
+        level = event.radius or (body.radius + event.altitude if event.altitude else 0.0)
+        if event.kind == "escape":
+            kind, sense = happening.ENERGY, 1
+        elif event.kind in ("periapsis", "apoapsis"):
+            kind, sense = happening.APSIS, 1 if event.kind == "periapsis" else -1
+        names.append(event.name or event.kind)
+        rows.append((kind, level, sense, happening.STOP if event.stop else happening.RECORD))
+    if scene.device.kind == "plasma-brake":
+        names.append("brake off")
+        rows.append((happening.RADIUS, body.radius + scene.device.off_below, -1, happening.END_OF_USE))
+    return tuple(names), happening.watch(rows)
+
+
+# ---------------------------------------------------------------- plan -> blocks
+def simulate(scene: Scene, *, steering=None, force=None) -> Run:
+    """Propagate a scene and return the whole Run.
+
+    steering : own attitude law, force : own additional acceleration in m/s2; each a numba.cfunc of
+    sailviz.propagate.dynamics.USER_SIGNATURE or an @njit function (t, x, y, z, vx, vy, vz, m) -> three floats, SI, inertial.
+    Raises SceneError if the scene asks for something infeasible, PropagationError if the integration breaks down.
+    """
+    return join(list(simulate_blocks(scene, steering=steering, force=force)))
+
+
+def simulate_blocks(
+    scene: Scene,
+    *,
+    steering=None,
+    force=None,
+    block_rows: int = BLOCK_ROWS,
+    progress: Callable[[float], None] | None = None,
+) -> Iterator[Run]:
+    """Like `simulate`, but yields Runs of at most block_rows rows as they are computed; memory stays flat.
+
+    The rows do not depend on block_rows. progress is called with the fraction of the duration that is done. Before a
+    PropagationError is raised, the rows up to it are yielded.
+    """
+    return _blocks(plan(scene, steering, force), block_rows, progress or (lambda fraction: None))
+
+
+def _grid(scene) -> tuple[int, float]:
+    """(rows, spacing s); the last row is the end of the run, or one spacing before it."""
+    run = scene.propagation
+    if run.output_interval is not None:
+        return int(np.floor(run.duration / run.output_interval * (1 + 1e-12))) + 1, run.output_interval
+    rows = run.outputs or DEFAULT_OUTPUTS
+    return rows, run.duration / (rows - 1)
+
+
+def _blocks(p: Plan, block_rows, progress):
+    run = p.scene.propagation
+    rows, spacing = _grid(p.scene)
+    state = dop853.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
+    setting = None
+    off_time = np.inf
+    switches = list(p.switches)
+    for first in range(0, rows, block_rows):
+        count = min(block_rows, rows - first)
+        times = np.minimum(spacing * np.arange(first, first + count), run.duration)
+        if first + count == rows and run.output_interval is None:
+            times[-1] = run.duration
+        due = [switch for switch in switches if switch[0] <= times[-1]]
+        del switches[: len(due)]
+        columns, found, status = _fill(p, state, times, due, progress)
+        if not dop853.in_use(state):
+            off_time = min([off_time] + [event.time for event in found if event.name == "brake off"])
+        last = status != dop853.DONE or first + count == rows
+        ended = {dop853.STOPPED: found[-1].name if found else "", dop853.SURFACE: "impact"}.get(status, "")
+        if ended:  # the state at the event is the last row
+            now = dop853.time(state)
+            if not len(columns[0]) or columns[0][-1] < now:
+                end = np.append(now, dop853.state(state))[:, None]
+                columns = (np.append(columns[0], now), np.hstack([columns[1], end[1:]]))
+        if len(columns[0]):
+            block = _observed(p, columns[0], columns[1], first, off_time)
+            setting = setting or _setting(p, block, rows)
+            yield replace(block, setting=setting, events=tuple(found), ended=ended)
+        if status in (dop853.UNDERFLOW, dop853.NOT_FINITE):
+            reason = "The step size fell below the resolution of time"
+            if status == dop853.NOT_FINITE:
+                reason = "The acceleration is not a finite number"
+            raise PropagationError(reason, dop853.time(state), dop853.state(state))
+        if last:
+            progress(1.0)
+            return
+
+
+def _fill(p: Plan, state, times, switches, progress):
+    """((times (n,), states (7, n)), events, status) of one block. Switching times are computed along with the rows."""
+    run = p.scene.propagation
+    moments = np.unique(np.concatenate([times, [time for time, _ in switches]])) if switches else times
+    components = 7 if p.model.device == dynamics.THRUSTER else 6
+    out = np.empty((components, len(moments)))
+    piece = max(1, min(len(moments), _grid(p.scene)[0] // 50))  # often enough to show progress and to hear Ctrl-C
+    found, status, filled = [], dop853.DONE, 0
+    for first in range(0, len(moments), piece):
+        part = moments[first : first + piece]
+        chunk = np.empty((components, len(part)))
+        while True:
+            status = dop853.advance(
+                state,
+                p.model,
+                p.breaks,
+                p.factors,
+                p.watch,
+                part,
+                chunk,
+                run.duration,
+                run.tolerance,
+                run.largest_step or np.inf,
+            )
+            found += [
+                Event("impact" if index < 0 else p.names[index], time, y) for index, time, y in dop853.drain_events(state)
+            ]
+            if status != dop853.EVENTS_FULL:
+                break
+        done = dop853.rows_done(state)
+        out[:, first : first + done] = chunk[:, :done]
+        filled = first + done
+        progress(dop853.time(state) / run.duration)
+        if status != dop853.DONE:
+            break
+    moments, out = moments[:filled], out[:, :filled]
+    states = out if components == 7 else np.vstack([out, np.full((1, filled), p.mass)])
+    for time, word in switches:
+        at = np.searchsorted(moments, time)
+        if at < filled:
+            found.append(Event(word, time, states[:, at].copy()))
+    found.sort(key=lambda event: event.time)
+    wanted = np.isin(moments, times)
+    return (moments[wanted], states[:, wanted]), found, status
+
+
+def _observed(p: Plan, time, states, first, off_time) -> Run:
+    """Everything that is derived from states row by row. off_time: s, when the device was switched off for good."""
+    interval = np.searchsorted(p.breaks, time, side="right") - 1
+    factor = np.where(time < off_time, p.factors[interval], 0.0)
+    states = np.ascontiguousarray(states)
+    normal, acceleration, per_length = dynamics.observe(time, states, factor, p.model)
+    position, velocity = states[:3].T.copy(), states[3:6].T.copy()
+    axes = frames.rtn(position, velocity)
+    pitch, cone, clock = frames.pitch_cone_clock(axes, normal, acceleration)
+    attitude = Attitude(pitch, cone, clock, normal, frames.quaternion(frames.body_axes(normal, axes[..., 1])))
+    on = (factor != 0) & (p.model.device != dynamics.NO_DEVICE)
+    thrust = Thrust(acceleration, frames.to_frame(axes, acceleration), np.linalg.norm(acceleration, axis=1), on)
+    environment = {}
+    if len(p.breaks) > 1 or p.scene.device.active is not None:
+        environment["thrust_factor"] = factor
+    if p.pressure is not None:
+        environment["solar_wind_pressure_Pa"] = p.pressure[interval]
+    if p.model.device == dynamics.PLASMA_BRAKE:
+        environment["plasma_force_N_m"] = per_length
+    return Run(
+        None,
+        first,
+        time,
+        position,
+        velocity,
+        states[6].copy(),
+        attitude,
+        thrust,
+        orbital.elements(position, velocity, p.body.mu),
+        environment,
+        _bodies(p, time),
+    )
+
+
+def _epoch(scene) -> np.datetime64 | None:
+    return None if scene.epoch_utc is None else np.datetime64(scene.epoch_utc, "ns")
+
+
+def _bodies(p: Plan, time):
+    epoch = _epoch(p.scene)
+    if epoch is None:
+        return {}
+    if p.body.name == "Earth":
+        return {"Sun": ephemeris.sun_position(epoch, time)}
+    if p.body.name == "Sun":
+        return {name: ephemeris.planet_position(name, epoch, time) for name in ephemeris.PLANETS}
+    return {}
+
+
+# ---------------------------------------------------------------- what the picture needs to know
+def _setting(p: Plan, block: Run, rows) -> Setting:
+    scene = p.scene
+    duration = scene.propagation.duration
+    return Setting(
+        title=scene.title,
+        family=scene.family or _family(scene),
+        about=scene.about,
+        look_for=tuple(scene.look_for),
+        thesis=scene.thesis,
+        body=p.body,
+        craft=_craft(scene),
+        duration=duration,
+        rows=rows,
+        epoch=_epoch(scene),
+        references=_references(p, block),
+        parameters=tuple(parameters_in_words(scene, p.design, _words_strength(scene, p.design))),
+        text=scene.text,
+        resolved=scene.resolved(),
+        versions={
+            "sailviz": sailviz.__version__,
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+            "numba": numba.__version__,
+        },
+        accuracy=(
+            f"Dormand-Prince 8(5,3) with dense output, relative tolerance {scene.propagation.tolerance:g} per step "
+            "(position against distance, velocity against the larger of speed and circular speed), float64."
+        ),
+        identity=p.identity,
+        play_duration=scene.recording.play_duration,
+    )
+
+
+def _family(scene) -> str:
+    if scene.body == "earth":
+        return "deorbit"
+    if scene.environment.solar_wind.kind != "steady":
+        return "wind"
+    return "displaced" if scene.start.kind == "displaced" else "spirals"
+
+
+def _craft(scene) -> Craft:
+    device = scene.device
+    labels = {
+        "solar-sail": "Solar sail",
+        "electric-sail": "E-sail",
+        "plasma-brake": "Plasma brake",
+        "thruster": "Thruster",
+        "none": "Spacecraft",
+    }
+    area = getattr(device, "area", None)
+    return Craft(
+        device.kind,
+        labels[device.kind],
+        side=None if area is None else float(np.sqrt(area)),
+        tethers=getattr(device, "tethers", None),
+        tether_length=getattr(device, "tether_length", None),
+    )
+
+
+def _words_strength(scene, design):
+    return _sail_strength(scene, design) if scene.device.kind in ("solar-sail", "electric-sail") else None
+
+
+def _references(p: Plan, block: Run) -> tuple[Reference, ...]:
+    """Curves that are there from the start: the orbit designed, the orbit departed from, the planets' orbits in view."""
+    found = []
+    start = p.scene.start
+    turn = np.linspace(0, 2 * np.pi, 361)
+    if start.kind == "displaced":
+        rho, z = start.radius * np.cos(start.elevation), start.radius * np.sin(start.elevation)
+        ring = np.column_stack([rho * np.cos(turn), rho * np.sin(turn), np.full_like(turn, z)])
+        found.append(Reference("designed orbit", "target", ring))
+    elif start.kind in ("circular", "elements"):
+        e = orbital.elements(p.position, p.velocity, p.body.mu)
+        if e.eccentricity < 1:
+            curve = orbital.state(
+                e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument, turn, p.body.mu
+            )[0]
+            found.append(Reference("initial orbit", "initial", curve))
+    if p.body.name == "Sun":
+        reach = np.linalg.norm(block.position, axis=1).max()
+        for name in ephemeris.PLANETS:
+            orbit = ephemeris.planet_orbit(name, _epoch(p.scene))
+            if np.linalg.norm(orbit, axis=1).min() <= 1.15 * reach:
+                found.append(Reference(name, "planet", orbit))
+    return tuple(found)

@@ -2,18 +2,24 @@
 
 from __future__ import annotations
 
-from sailviz.run import Setting
-
-COLUMNS = 5  # of the table of parameters
+from sailviz.run import Event, Setting
 
 
 def about(setting: Setting) -> str:
-    """Markdown. A table of one row, since height is scarce and width is not."""
-    lines = [f"### {setting.title}", "", setting.about.strip(), ""]
+    """Markdown. The parameters run on in a line, since a table is cut off where the panel is narrow."""
+    lines = [f"#### {setting.title}", "", setting.about.strip(), ""]
     lines += [f"- {hint.strip()}" for hint in setting.look_for]
     if setting.parameters:
-        names, values = zip(*setting.parameters[:COLUMNS], strict=True)
-        lines += ["", f"| {' | '.join(names)} |", "|---" * len(names) + "|", f"| {' | '.join(values)} |"]
+        lines += ["", " · ".join(f"{name} **{value}**" for name, value in setting.parameters)]
     if setting.thesis:
         lines += ["", f"*Thesis, section {setting.thesis}*"]
     return "\n".join(lines)
+
+
+def event_line(event: Event) -> str:
+    """An event with its time, in days or, early on, in a smaller unit."""
+    time = abs(event.time)
+    value, unit = (
+        (event.time / 86400, "d") if time >= 86400 else (event.time / 3600, "h") if time >= 3600 else (event.time, "s")
+    )
+    return f"{value:.4g} {unit}: {event.name}" if " at t = " not in event.name else event.name

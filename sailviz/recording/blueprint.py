@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import rerun as rr
 import rerun.blueprint as rrb
-from rerun.blueprint.archetypes import PlotBackground
+from rerun.blueprint.archetypes import PlotBackground, TextLogColumns
+from rerun.blueprint.encodings import TextLogColumn, TextLogColumnKind, TimelineColumn
 
 from sailviz.recording.layout import Camera, Layout, PlotView
 from sailviz.recording.look import BACKGROUND
@@ -35,7 +36,9 @@ def blueprint(layout: Layout) -> rrb.Blueprint:
 def arrange(layout: Layout) -> rrb.Container:
     """Left: cameras as tabs over close-up and words. Right: curves over lanes."""
     words = rrb.Tabs(
-        rrb.TextDocumentView(origin="/about", name="About"), rrb.TextLogView(origin="/log", name="Events"), active_tab=0
+        rrb.TextDocumentView(origin="/about", name="About"),
+        rrb.TextLogView(origin="/log", name="Events", columns=event_columns(layout)),
+        active_tab=0,
     )
     left = rrb.Vertical(
         rrb.Tabs(*(space_view(layout, camera) for camera in layout.cameras), active_tab=0),
@@ -54,8 +57,16 @@ def arrange(layout: Layout) -> rrb.Container:
     return rrb.Horizontal(left, rrb.Vertical(*right, row_shares=shares), column_shares=[5, 3])
 
 
+def event_columns(layout: Layout) -> TextLogColumns:
+    """Only the line itself, which says when; the viewer's own time column is too narrow for a date."""
+    kinds = [TextLogColumn(kind, visible=kind == TextLogColumnKind.Body) for kind in TextLogColumnKind]
+    times = [TimelineColumn(name, visible=False) for name in layout.timelines]
+    return TextLogColumns(timeline_columns=times, text_log_columns=kinds)
+
+
 def space_view(layout: Layout, camera: Camera) -> rrb.Spatial3DView:
-    contents = ["+ /world/**", *(f"- /world/planets/{name}/**" for name in layout.hidden)]
+    far = [f"- /world/{group}/{name}/**" for name in layout.hidden for group in ("planets", "names")]
+    contents = ["+ /world/**", *far]
     if camera.name == "Follow":
         contents += ["- /world/names/**", "- /world/night/umbra"]  # labels show through; the umbra's wall would be near
     return rrb.Spatial3DView(

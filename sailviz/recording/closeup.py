@@ -118,7 +118,10 @@ class SailCloseUp:
         corners = np.concatenate([np.zeros((count, 1, 3)), fan], 1)
         columns = rr.Mesh3D.columns(vertex_positions=f4(corners.reshape(-1, 3))).partition([ARC + 1] * count)
         pen.columns("/sail/pitch/fan", index, columns)
-        pen.labels("/sail/pitch/name", index, 1.18 * fan[:, ARC // 4], angle_texts("pitch", attitude.pitch))
+        # on the other side of the radial line: between it and the normal there is the thrust
+        across = unit(samples.normal_rtn * [0.0, 1.0, 1.0])
+        place = PITCH_RADIUS * (np.cos(np.radians(14)) * out - np.sin(np.radians(14)) * across)
+        pen.labels("/sail/pitch/name", index, place, angle_texts("pitch", attitude.pitch))
         thrust = np.where(np.any(samples.thrust_rtn, 1, keepdims=True), unit(samples.thrust_rtn), out)
         pen.strips("/sail/cone", index, CONE_RADIUS * arcs(out, thrust))
         self._add_clock(samples, attitude.pitch, attitude.clock)

@@ -10,7 +10,7 @@ import numpy as np
 import rerun as rr
 
 from sailviz.recording import rows
-from sailviz.recording.about import about
+from sailviz.recording.about import about, event_line
 from sailviz.recording.blueprint import blueprint
 from sailviz.recording.closeup import close_up
 from sailviz.recording.layout import Extents, Layout, lay_out
@@ -53,7 +53,7 @@ class Drawing:
         self._show()
 
     def add_events(self, events: list[Event], index) -> None:
-        texts = [event.name for event in events]
+        texts = [event_line(event) for event in events]
         levels = [
             rr.TextLogLevel.WARN if "interrupted" in text or " at t = " in text else rr.TextLogLevel.INFO
             for text in texts

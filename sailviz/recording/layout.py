@@ -14,11 +14,7 @@ from sailviz.run import Run, Setting
 
 ALWAYS = ("distance", "altitude", "inclination", "eccentricity", "angles", "clock", "thrust")
 ALWAYS = tuple(f"/plots/{name}" for name in ALWAYS)
-COLUMN, FURNITURE, NUMBER = (
-    640.0,
-    48.0,
-    15.0,
-)  # pixels: the plots' column on a laptop, title and axis, a number on the axis
+COLUMN, FURNITURE, NUMBER = 640.0, 48.0, 19.0  # pixels: the plots on a laptop, title and axis of one, a number
 DEPARTING = 0.02  # relative change of distance below which an orbit counts as closed
 
 
@@ -175,7 +171,7 @@ def about_sun(radius: float, height: float, setting: Setting) -> list[Camera]:
     follow = np.array([-0.42, 0.50, 0.26] if sail else [0.30, -0.62, 0.26]) * radius
     return [
         Camera("System", "/", tuple(outside.tolist()), (0.0, 0.0, 0.02 * radius)),
-        Camera("From the pole", "/", (0.0, -0.01 * radius, 2.3 * radius)),
+        Camera("From the pole", "/", (0.0, -0.01 * radius, 2.45 * radius)),
         Camera("Follow", "/world/rtn", tuple(follow.tolist()), (-0.12 * radius, 0.0, 0.0)),
     ]
 

@@ -176,7 +176,12 @@ class Curves:
         for plot in self.plots:
             # the later curve lies on top: thinner, so that an equal one below it still shows
             widths = [width * (1.6 if k < len(plot.names) - 1 else 1.0) for k in range(len(plot.names))]
-            style = rr.SeriesLines(names=list(plot.names), colors=[list(c) for c in plot.colors], widths=widths)
+            style = rr.SeriesLines(
+                names=list(plot.names),
+                colors=[list(color) for color in plot.colors],
+                widths=widths,
+                aggregation_policy=rr.components.AggregationPolicy.MinMax,  # the mean would hide an oscillation
+            )
             pen.static(plot.path, style)
         for lane in self._lanes:
             on, off = look.LANES.get(

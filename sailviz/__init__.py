@@ -19,8 +19,8 @@ except PackageNotFoundError:  # run from a folder that was never installed
 _WHERE = {
     "load_scene": "sailviz.scene",
     "Scene": "sailviz.scene",
-    "simulate": "sailviz.simulate",
-    "simulate_blocks": "sailviz.simulate",
+    "simulate": "sailviz.simulation",
+    "simulate_blocks": "sailviz.simulation",
     "Run": "sailviz.run",
     "record": "sailviz.recording",
     "read": "sailviz.recording",

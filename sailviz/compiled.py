@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numba
 
 # No reassociation: compensated sums and NaN must mean what they say. Contraction (fused multiply-add) is safe.
@@ -32,3 +34,14 @@ def inlined(function):
 def called(function):
     """Like `inlined`, for functions called from so many places that copies of them would only lengthen the compilation."""
     return numba.njit(_nrt=False, **_OPTIONS)(function)
+
+
+def is_compiled(function) -> bool:
+    """Whether the machine code of a `compiled` function is in memory or on disk already. A guess from the cache's index
+    file: it only decides whether a person is told to wait."""
+    if function.signatures:
+        return True
+    try:
+        return Path(function._cache._cache_file._index_path).exists()
+    except AttributeError:  # no cache, or another numba
+        return False

@@ -1,7 +1,7 @@
 """The scene file: TOML with the unit in every physical key, checked whole, SI once loaded.
 
 Imports neither rerun nor numba nor scipy, so that `sailviz check` answers at once. What the values mean as arrays is
-simulate.py's business.
+simulation.py's business.
 """
 
 from __future__ import annotations

@@ -1,0 +1,5 @@
+"""`python -m sailviz`."""
+
+from sailviz.cli import main
+
+main(prog_name="sailviz")

@@ -6,14 +6,13 @@ from sailviz.run import Event, Setting
 
 
 def about(setting: Setting) -> str:
-    """Markdown. The parameters run on in a line, since a table is cut off where the panel is narrow."""
-    lines = [f"#### {setting.title}", "", setting.about.strip(), ""]
+    """Markdown. No heading: height is scarce; parameters run on in a line: a narrow panel would cut a table off."""
+    lines = [f"**{setting.title}**", "", setting.about.strip(), ""]
     lines += [f"- {hint.strip()}" for hint in setting.look_for]
-    if setting.parameters:
-        lines += ["", " · ".join(f"{name} **{value}**" for name, value in setting.parameters)]
+    facts = [f"{name} **{value}**" for name, value in setting.parameters]
     if setting.thesis:
-        lines += ["", f"*Thesis, section {setting.thesis}*"]
-    return "\n".join(lines)
+        facts.append(f"thesis, section **{setting.thesis}**")
+    return "\n".join([*lines, "", " · ".join(facts)])
 
 
 def event_line(event: Event) -> str:

@@ -1,4 +1,6 @@
-"""Where to look from. Found by trying directions, so that arrows are apart, nothing is edge-on and the Sun is where it helps."""
+"""Where to look from. Found by trying directions, so that arrows are apart, nothing is edge-on and the Sun is where it
+helps.
+"""
 
 from __future__ import annotations
 
@@ -18,8 +20,8 @@ def directions(elevations, step: float = 10.0) -> np.ndarray:
 def apart(arrows, facing=None, open_to=None, elevations=(12, 20, 28, 36, 44)) -> np.ndarray:
     """Direction from which arrows from the origin look long and well separated. arrows (k, 3) -> (3,) unit.
 
-    `facing` is the normal of a sail whose sunward side should be seen at a slant of about 70 degrees, `open_to` the normal of
-    a plane that should not be seen edge-on.
+    `facing` is the normal of a sail whose sunward side should be seen at a slant of about 70 degrees, `open_to` the
+    normal of a plane that should not be seen edge-on.
     """
     arrows = unit(np.asarray(arrows, float))
     eyes = directions(elevations)
@@ -43,7 +45,9 @@ def apart(arrows, facing=None, open_to=None, elevations=(12, 20, 28, 36, 44)) ->
 
 
 def over_planet(orbit_normal, sun=None) -> np.ndarray:
-    """Direction that sees an orbit as an open ellipse across its planet, the line between day and night, and some north."""
+    """Direction that sees an orbit as an open ellipse across its planet, the line between day and night, and some
+    north.
+    """
     eyes = directions(np.arange(5, 50, 5), 5.0)
     cost = np.abs(np.abs(eyes @ orbit_normal) - 0.45) + 0.6 * np.abs(eyes[:, 2] - 0.40)
     if sun is not None:

@@ -1,7 +1,8 @@
 """The close-up: the craft in the orbital frame, with what acts on it and its angles. Units: a sail is 14 to 16 across.
 
-/sail has x from the central body, y transverse, z along the orbit normal; for a hanging tether x is transverse, y normal and
-z up, so that the planet is below. Arrows of thrust are as long as the root of the thrust, so that weak ones are still seen.
+/sail has x from the central body, y transverse, z along the orbit normal; for a hanging tether x is transverse, y
+normal and z up, so that the planet is below. Arrows of thrust are as long as the root of the thrust, so that weak ones
+are still seen.
 """
 
 from __future__ import annotations
@@ -109,7 +110,9 @@ class SailCloseUp:
             self._pen.labels("/sail/force/name", samples.index, 1.16 * root, texts)
 
     def _add_angles(self, samples: Samples) -> None:
-        """Pitch as a fan from the radial direction to the normal, cone as an arc to the thrust, clock on the normal's circle."""
+        """Pitch as a fan from the radial direction to the normal, cone as an arc to the thrust, clock on the normal's
+        circle.
+        """
         pen, index, count = self._pen, samples.index, len(samples)
         attitude = samples.run.attitude
         out = np.tile([1.0, 0.0, 0.0], (count, 1))
@@ -183,8 +186,8 @@ class TetherCloseUp:
         pen.arrows("/sail/velocity", index, 8.0 * velocity)
         pen.labels("/sail/velocity/name", index, 8.6 * velocity)
         size = samples.run.thrust.magnitude
-        # Uniform along the tether, since the run knows the whole force only. In the tether's own frame, across it: there the
-        # static scale can stretch the arrows and leave their places alone.
+        # Uniform along the tether, since the run knows the whole force only. In the tether's own frame, across it:
+        # there the static scale can stretch the arrows and leave their places alone.
         root = np.sqrt(size)[:, None] * to_frame(axes, unit(thrust)) * [1.0, 1.0, 0.0]
         down = np.zeros((ARROWS, 3))
         down[:, 2] = -(0.10 + 0.85 * np.linspace(0, 1, ARROWS)) * TETHER

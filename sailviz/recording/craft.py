@@ -1,6 +1,8 @@
-"""The craft themselves, of size 1: a square sail of side 1, an E-sail of radius 1, a satellite of height 0.3 with its tether.
+"""The craft themselves, of size 1: a square sail of side 1, an E-sail of radius 1, a satellite of height 0.3 with its
+tether.
 
-Frame: +z is the sail's normal, away from the Sun; of a tether, from its tip to the satellite; of a thruster, the thrust.
+Frame: +z is the sail's normal, away from the Sun; of a tether, from its tip to the satellite; of a thruster, the
+thrust.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The picture of a run, put together: world, close-up, curves, words, and the blueprint that shows them.
 
-Whole groups of drawn rows are written as they come; what depends on how far the run reaches is written after the first block
-and, where that has changed, once more at the end. So neither memory nor the digest depends on the blocks.
+Whole groups of drawn rows are written as they come; what depends on how far the run reaches is written after the first
+block and, where that has changed, once more at the end. So neither memory nor the digest depends on the blocks.
 """
 
 from __future__ import annotations

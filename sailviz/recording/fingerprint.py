@@ -1,4 +1,6 @@
-"""What a recording holds, as one hash: equal for equal contents, however they were cut into chunks and whenever written."""
+"""What a recording holds, as one hash: equal for equal contents, however they were cut into chunks and whenever
+written.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +16,8 @@ from sailviz.recording.reader import ROW_ID, is_component, latest_static, read, 
 def digest(path) -> str:
     """SHA-256, hexadecimal, over the contents of every entity of a recording.
 
-    Row ids, chunks, the recording's id, wall-clock timelines and the layout of the views do not count: the same scene run
-    twice on one machine with one set of versions has one digest. Any bit of any number that changes, changes it.
+    Row ids, chunks, the recording's id, wall-clock timelines and the layout of the views do not count: the same scene
+    run twice on one machine with one set of versions has one digest. Any bit of any number that changes, changes it.
     """
     total = hashlib.sha256()
     for name, part in sorted(digest_by_entity(path).items()):

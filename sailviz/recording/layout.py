@@ -221,9 +221,7 @@ def name_views(views: list[Camera], setting: Setting, frame: Frame, sail: float,
     }
     drawn, true = sizes.get(craft.kind, (0.0, None))
     if true and drawn:
-        notes.append(
-            f"{(craft.label or 'craft').lower() if craft.kind != 'electric-sail' else 'E-sail'} ×{in_words(drawn * frame.unit / true)}"
-        )
+        notes.append(f"{craft.label or 'craft'} ×{in_words(drawn * frame.unit / true)}")
     if frame.sparse and frame.slowed > 1.5:
         notes.append(f"orbiting slowed {in_words(frame.slowed)} times")
     name = views[0].name + (f" ({', '.join(notes)})" if notes else "")

@@ -1,7 +1,8 @@
 """Colours, sizes and lengths of everything that is drawn, by the role it plays.
 
-Bright is what is now and what is data; dim (0.4 to 0.6 of the colour, opaque) is context. Never transparency on lines or
-points: Rerun darkens the colour and still hides what is behind. A quantity has the same colour in space and in its plot.
+Bright is what is now and what is data; dim (0.4 to 0.6 of the colour, opaque) is context. Never transparency on lines
+or points: Rerun darkens the colour and still hides what is behind. A quantity has the same colour in space and in its
+plot.
 """
 
 from __future__ import annotations

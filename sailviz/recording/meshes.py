@@ -1,6 +1,7 @@
 """Shapes for the picture, numpy only: sails, tethers, boxes, spheres. No units; pure geometry, no drawing.
 
-A craft stands in its own frame: +z is the sail's normal, away from the Sun, the film lies in x, y; a tether hangs to -z.
+A craft stands in its own frame: +z is the sail's normal, away from the Sun, the film lies in x, y; a tether hangs to
+-z.
 """
 
 from __future__ import annotations
@@ -64,9 +65,10 @@ def about_z(angle: float) -> np.ndarray:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
-# ---------------------------------------------------------------------------------------------------------- plain shapes
 def sphere(rows: int = 48, columns: int = 96):
-    """Unit sphere with a seam at longitude 180 degrees -> Mesh, uv ((rows + 1)(columns + 1), 2), v down from the north pole."""
+    """Unit sphere with a seam at longitude 180 degrees -> Mesh, uv ((rows + 1)(columns + 1), 2), v down from the north
+    pole.
+    """
     latitude, longitude = np.meshgrid(
         np.linspace(np.pi / 2, -np.pi / 2, rows + 1), np.linspace(-np.pi, np.pi, columns + 1), indexing="ij"
     )
@@ -140,13 +142,13 @@ def box(size) -> Mesh:
     return Mesh(whole.vertices * np.asarray(size, float) / 2, whole.faces, whole.normals)
 
 
-# ------------------------------------------------------------------------------------------------------------------ sails
 BILLOW = 0.06  # depth of the pillows as a fraction of the side
 SCALLOP = 0.05  # how far the edges are drawn in
 
 
 def film_point(u, v, a, b):
-    """A point of one quadrant of a square sail of side 1 between the booms a and b. u, v (n,) >= 0, u + v <= 1 -> (n, 3).
+    """A point of one quadrant of a square sail of side 1 between the booms a and b. u, v (n,) >= 0, u + v <= 1 -> (n,
+    3).
 
     A pillow (27 u v w is 1 in the middle) that pushes along +z, and an outer edge that hangs between the boom tips.
     """
@@ -215,7 +217,6 @@ def ring(points: int = 97) -> np.ndarray:
     return np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1)
 
 
-# -------------------------------------------------------------------------------------------------------------------- glTF
 def textured_glb(mesh: Mesh, uv: np.ndarray, jpeg: bytes) -> bytes:
     """A binary glTF file of a mesh with a JPEG on it, unlit: a tenth of the size that Rerun needs for a raw texture.
 

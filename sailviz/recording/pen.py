@@ -14,7 +14,9 @@ def f4(values) -> np.ndarray:
 
 
 class Pen:
-    """Writes to a stream. Style is static, data have rows: of one component of one entity the static value would hide the rows."""
+    """Writes to a stream. Style is static, data have rows: of one component of one entity the static value would hide
+    the rows.
+    """
 
     def __init__(self, stream: rr.RecordingStream):
         self._stream = stream
@@ -26,7 +28,9 @@ class Pen:
         self._stream.send_columns(path, index, columns)
 
     def mesh(self, path: str, mesh: Mesh, color, shaded: bool = True, side: str | None = None) -> None:
-        """A mesh of one colour; `side` "front" or "back" draws only that one. Unshaded is flat: for what glows, or is air."""
+        """A mesh of one colour; `side` "front" or "back" draws only that one. Unshaded is flat: for what glows, or is
+        air.
+        """
         more = {"vertex_normals": f4(mesh.normals)} if shaded else {}
         if side:
             more["face_rendering"] = side

@@ -137,7 +137,7 @@ def thrust_units(first: Run) -> tuple[float, str]:
 
 
 def environment_plot(name: str, color) -> Plot:
-    """A column of the environment: its title from its name, its unit from the name's ending, densities as logarithms."""
+    """A column of the environment: title from its name, unit from the name's ending, densities as logarithms."""
     ending = max((u for u in (*UNITS, *LOGARITHMIC) if name.endswith(u)), key=len, default="")
     words = name.removesuffix(ending).replace("_", " ")
     words = words[:1].upper() + words[1:]
@@ -235,10 +235,11 @@ class Curves:
 
 
 def nice_range(low: float, high: float, numbers: float = 4.0) -> tuple[float, float]:
-    """A range with a margin whose ends are round, such that the viewer writes at least two numbers on the axis if it can.
+    """A range with a margin whose ends are round, such that the viewer writes at least two numbers on the axis if it
+    can.
 
-    It writes multiples of a power of ten where there is room for them: `numbers` is how many fit. A constant stands in the
-    middle of a fifth of its size.
+    It writes multiples of a power of ten where there is room for them: `numbers` is how many fit. A constant stands in
+    the middle of a fifth of its size.
     """
     if high - low <= 1e-3 * max(abs(low), abs(high)):
         half = 0.1 * max(abs(low), abs(high)) or 0.5

@@ -291,7 +291,7 @@ def is_component(kind: pa.DataType) -> bool:
 
 
 def to_numpy(column) -> np.ndarray:
-    """A component column with k values a row -> (n,) for one, (n, k) for a fixed-size list, objects where rows differ."""
+    """A component column with k values a row -> (n,) for one, (n, k) for fixed-size lists, objects where rows differ."""
     column = column.combine_chunks() if isinstance(column, pa.ChunkedArray) else column
     rows = len(column)
     counts = np.asarray(column.value_lengths().fill_null(0))

@@ -1,7 +1,7 @@
 """Rows of a Run: some of them, and the timelines they stand on.
 
-Everything that is drawn is thinned by the row's number in the whole run, never by its place in a block, so that a recording does
-not depend on the blocks in which the run arrived.
+Everything that is drawn is thinned by the row's number in the whole run, never by its place in a block, so that a
+recording does not depend on the blocks in which the run arrived.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from dataclasses import fields, replace
 import numpy as np
 import rerun as rr
 
+from sailviz.constants import YEAR
 from sailviz.errors import RecordingError
 from sailviz.run import Run
 
@@ -18,7 +19,9 @@ LONGEST = 2**63 / 1e9  # s that a timeline of 64-bit nanoseconds can count: 292 
 
 
 def take(run: Run, index) -> Run:
-    """The rows `index` of a run: a slice or an array of ints into this block. `first` and `events` stay those of the block."""
+    """The rows `index` of a run: a slice or an array of ints into this block. `first` and `events` stay those of the
+    block.
+    """
 
     def pick(part):
         if isinstance(part, np.ndarray):
@@ -46,7 +49,8 @@ def check_duration(run: Run) -> None:
     last = max(abs(run.setting.duration), abs(float(run.time[-1])) if len(run) else 0.0)
     if last >= LONGEST:
         raise RecordingError(
-            f"a recording counts nanoseconds in 64 bits and so can span 292 years, but this run spans {last / 31557600:.4g} years"
+            "a recording counts nanoseconds in 64 bits and so can span 292 years, "
+            f"but this run spans {last / YEAR:.4g} years"
         )
     epoch = run.setting.epoch
     if epoch is not None and int(epoch.astype("datetime64[ns]").astype(np.int64)) + last * 1e9 >= 2**63:

@@ -1,4 +1,6 @@
-"""The rows of which a picture is made, in the units of the view. At most PICTURE_ROWS of them, evenly spaced over the run."""
+"""The rows of which a picture is made, in the units of the view. At most PICTURE_ROWS of them, evenly spaced over the
+run.
+"""
 
 from __future__ import annotations
 
@@ -137,7 +139,9 @@ def slowed(run: Run, number, frame: Frame):
 
 
 def orbits(run: Run, frame: Frame, count: int = 121) -> np.ndarray:
-    """Osculating orbits as closed lines, (n, count, 3) in view units; of an open one the part within three times the distance."""
+    """Osculating orbits as closed lines, (n, count, 3) in view units; of an open one the part within three times the
+    distance.
+    """
     e = run.elements
     reach = np.linalg.norm(run.position, axis=1) * 3.0
     with np.errstate(invalid="ignore", divide="ignore"):

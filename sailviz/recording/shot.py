@@ -1,4 +1,6 @@
-"""Pictures of a recording, without a screen: Rerun's viewer runs headless on software Vulkan and is asked for screenshots."""
+"""Pictures of a recording, without a screen: Rerun's viewer runs headless on software Vulkan and is asked for
+screenshots.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +53,9 @@ def picture(path, png, *, view: str | None = None, at=1.0, size=(1600, 900), pan
 
 
 class Studio:
-    """One headless viewer for many pictures of one recording: `with Studio("orbit.rrd") as studio: studio.shoot("a.png")`."""
+    """One headless viewer for many pictures of one recording: `with Studio("orbit.rrd") as studio:
+    studio.shoot("a.png")`.
+    """
 
     def __init__(self, path, *, size=(1600, 900), panels: bool = True):
         read(path)  # says in one sentence what cannot be shown

@@ -60,7 +60,9 @@ class File:
 
     @staticmethod
     def reserve(path) -> File:
-        """Claim a path: the growing file is made at once, so that what cannot be written fails before anything is computed."""
+        """Claim a path: the growing file is made at once, so that what cannot be written fails before anything is
+        computed.
+        """
         path = Path(path)
         if path.is_dir():
             raise RecordingError(f"cannot write the recording {path}: it is a directory")
@@ -84,7 +86,9 @@ class File:
 
 
 def resolve(sinks) -> list:
-    """Sinks as given by a user -> File, Viewer, Web, Connect, Memory or STDOUT. Raises RecordingError for anything else."""
+    """Sinks as given by a user -> File, Viewer, Web, Connect, Memory or STDOUT. Raises RecordingError for anything
+    else.
+    """
     if not sinks:
         raise RecordingError("a recording needs somewhere to go: a path, VIEWER, WEB, Connect(url), Memory() or '-'")
     wanted = [sink if isinstance(sink, Viewer | Web | Connect | Memory) or sink == STDOUT else None for sink in sinks]
@@ -118,7 +122,7 @@ def discard(sinks) -> None:
 
 
 def attach(stream: rr.RecordingStream, sinks: list):
-    """Point a stream at its sinks -> what the sinks need later: the memory recording, or the address of a data server."""
+    """Point a stream at its sinks -> what is needed later: the memory recording, or the data server."""
     if sinks == [STDOUT]:
         if sys.stdout.isatty():
             raise RecordingError(

@@ -1,7 +1,9 @@
-"""The system view: centre, planets, orbits, trail and craft, in units of order 1 to 100 (never metres, Rerun is float32).
+"""The system view: centre, planets, orbits, trail and craft, in units of order 1 to 100 (never metres, Rerun is
+float32).
 
-What moves has rows; what depends on how far the run reaches (sizes of the craft, of arrows, of the Sun) is a static scale that
-is written again at the end. Craft and arrows hang under `/world/craft`, which moves with the craft without turning.
+What moves has rows; what depends on how far the run reaches (sizes of the craft, of arrows, of the Sun) is a static
+scale that is written again at the end. Craft and arrows hang under `/world/craft`, which moves with the craft without
+turning.
 """
 
 from __future__ import annotations
@@ -141,7 +143,9 @@ class World:
                 self._pen.strips(f"/world/trail/{part}", index, strips, colors)
 
     def _ramp(self, samples: Samples, factor: float = 1.0) -> np.ndarray:
-        """Colours by altitude from HIGH at the start to LOW on the ground; the root because a descent ends fast. (n,) int."""
+        """Colours by altitude from HIGH at the start to LOW on the ground; the root because a descent ends fast. (n,)
+        int.
+        """
         start = max(self._frame.origin_radius - 1, 1e-9)
         altitude = samples.run.elements.semi_major_axis / self._frame.unit - 1
         down = np.sqrt(np.clip(1 - altitude / start, 0, 1))
@@ -150,7 +154,7 @@ class World:
         return (rgb[:, 0] << 24) | (rgb[:, 1] << 16) | (rgb[:, 2] << 8) | 255
 
     def add_ladder(self, samples: Samples) -> None:
-        """Osculating orbits of a few rows far apart, all of them in sight at any time: the whole descent at a glance."""
+        """Osculating orbits of a few rows far apart, always in sight: the whole descent at a glance."""
         if self._has_ladder and len(samples):
             color = self._ramp(samples, 0.55) if self._planet else np.full(len(samples), look.rgba(look.TRAIL_FUTURE))
             self._pen.strips("/world/ladder", samples.index, orbits(samples.run, self._frame, 241), color)
@@ -205,7 +209,7 @@ def draw_sun(pen: Pen) -> None:
 
 
 def draw_planet(pen: Pen, path: str, name: str, dimmed: bool = False) -> None:
-    """A planet of radius 1: the Earth with its map (it does not turn: its rotation is no part of a run), others plain."""
+    """A planet of radius 1: the Earth with its map (it does not turn: no part of a run says how), others plain."""
     ball, uv = meshes.sphere(64, 128)
     picture = asset("earth_2048.jpg") if name == "Earth" else None
     if picture is None:
@@ -240,7 +244,7 @@ def draw_night(pen: Pen) -> None:
 
 
 def draw_reference(pen: Pen, reference: Reference, length: float) -> None:
-    """An orbit that is there from the start. A target is drawn a little too large: on the trail itself it would tear."""
+    """An orbit that is there from the start. A target is drawn a little large: on the trail it would tear."""
     line = np.asarray(reference.points, float) / length
     if reference.role == "planet":
         color = look.dim(look.planet_color(reference.name))
@@ -253,7 +257,7 @@ def draw_reference(pen: Pen, reference: Reference, length: float) -> None:
 
 
 def asset(name: str) -> Path | None:
-    """A file that the package ships, None where it is missing."""
-    package = Path(sailviz.__file__ or sailviz.__path__[0])
-    homes = (package.parent / "assets", package.parent.parent / "assets", package / "assets", package.parent / "assets")
+    """A file that travels with sailviz, None where it is missing: inside the package, or beside it in a checkout."""
+    package = Path(sailviz.__file__).parent
+    homes = (package / "assets", package.parent / "assets")
     return next((home / name for home in homes if (home / name).is_file()), None)

@@ -66,9 +66,9 @@ def record(run: Run | Iterable[Run], sink, *more_sinks) -> Recorded:
 class Recorder:
     """A recording while it grows: `with Recorder("orbit.rrd") as recorder: recorder.add(block)`.
 
-    A file has a temporary name until it is finished, so that a recording appears whole. When the body of the `with` raises
-    after a block was added, the recording is finished with what there is, an event says why, /scene says complete = False,
-    and the exception goes on. When it raises earlier, nothing is left behind.
+    A file has a temporary name until it is finished, so that a recording appears whole. When the body of the `with`
+    raises after a block was added, the recording is finished with what there is, an event says why, /scene says
+    complete = False, and the exception goes on. When it raises earlier, nothing is left behind.
     """
 
     def __init__(self, *sinks):
@@ -100,7 +100,9 @@ class Recorder:
         return False
 
     def add(self, run: Run) -> None:
-        """Append the next block. Raises RecordingError where it does not follow the one before, or lasts over 292 years."""
+        """Append the next block. Raises RecordingError where it does not follow the one before, or lasts over 292
+        years.
+        """
         if self.recorded is not None:
             raise RecordingError("this recording is finished; a block came after its end")
         if run.first != self._rows:

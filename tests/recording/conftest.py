@@ -1,12 +1,19 @@
-"""Small runs made with numpy alone: closed-form motions with the thrust that they take, so that every column means something."""
+"""Small runs made with numpy alone: closed-form motions with the thrust that they take, so that every column means
+something.
+"""
 
 from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from sailviz.elements import elements, state
 from sailviz.frames import body_axes, from_frame, pitch_cone_clock, quaternion, rtn, to_frame, unit
+from sailviz.recording import record
+from sailviz.recording.rows import take
 from sailviz.run import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust
 
 AU = 149_597_870_700.0
@@ -105,8 +112,10 @@ def planet_orbits():
     return [Reference(name, "planet", circle(a * AU)) for name, a in PLANETS.items()]
 
 
-def displaced_run(rows=300, years=1.5, elevation=np.radians(12), radius=0.95 * AU, epoch=True):
-    """An E-sail on a circle above the ecliptic: the thrust is what the circle takes, the normal leans twice as far as it."""
+def displaced_run(rows=300, years=1.5, elevation=0.21, radius=0.95 * AU, epoch=True):
+    """An E-sail on a circle above the ecliptic: the thrust is what the circle takes, the normal leans twice as far as
+    it.
+    """
     time = np.linspace(0, years * YEAR, rows)
     omega = 0.8 * np.sqrt(MU_SUN / radius**3)
     rho, height = radius * np.cos(elevation), radius * np.sin(elevation)
@@ -140,8 +149,8 @@ def displaced_run(rows=300, years=1.5, elevation=np.radians(12), radius=0.95 * A
     )
 
 
-def spiral_run(rows=300, years=1.5, pitch=np.radians(35.26)):
-    """A solar sail inwards on a logarithmic spiral, the normal leaning against the motion; coasting in the last tenth."""
+def spiral_run(rows=300, years=1.5, pitch=0.6155):
+    """A solar sail inwards on a logarithmic spiral, the normal leaning against the motion; the last tenth coasts."""
     time = np.linspace(0, years * YEAR, rows)
     slope = -0.05
     rate = 1.5 * slope * np.sqrt(MU_SUN / AU**3)
@@ -170,7 +179,9 @@ def spiral_run(rows=300, years=1.5, pitch=np.radians(35.26)):
 
 
 def descent_run(rows=300, days=52.0, high=700e3, low=500e3, revolutions=None):
-    """A plasma brake from one circular orbit to a lower one, nearly circular on the way, the tether hanging from the satellite."""
+    """A plasma brake from one circular orbit to a lower one, nearly circular on the way, the tether hanging from the
+    satellite.
+    """
     time = np.linspace(0, days * DAY, rows)
     a = RADIUS_EARTH + high - (high - low) * (time / time[-1]) ** 1.3
     mean_motion = np.sqrt(MU_EARTH / a**3)
@@ -204,15 +215,40 @@ def descent_run(rows=300, days=52.0, high=700e3, low=500e3, revolutions=None):
     )
 
 
-RUNS = {"displaced": displaced_run, "spirals": spiral_run, "deorbit": descent_run}
+def in_blocks(run, size):
+    """The same run as consecutive blocks, each with the events up to its end."""
+    blocks, told = [], -np.inf
+    for start in range(0, len(run), size):
+        block = take(run, slice(start, start + size))
+        events = tuple(event for event in run.events if told < event.time <= block.time[-1])
+        blocks.append(replace(block, first=start, events=events))
+        told = block.time[-1]
+    return blocks
 
 
-@pytest.fixture(params=RUNS)
+FAMILIES = {"displaced": displaced_run, "spirals": spiral_run, "deorbit": descent_run}
+
+
+@pytest.fixture
+def runs():
+    """Makers of runs, and the cutting of a run into blocks."""
+    return SimpleNamespace(displaced=displaced_run, spiral=spiral_run, descent=descent_run, in_blocks=in_blocks)
+
+
+@pytest.fixture(params=FAMILIES)
 def any_run(request):
     """One run of each family."""
-    return RUNS[request.param]()
+    return FAMILIES[request.param]()
 
 
 @pytest.fixture
 def run():
     return displaced_run()
+
+
+@pytest.fixture(scope="module", params=FAMILIES)
+def recorded_family(request, tmp_path_factory):
+    """Name and recording of a run of each family."""
+    path = tmp_path_factory.mktemp("families") / f"{request.param}.rrd"
+    record(FAMILIES[request.param](rows=200), path)
+    return request.param, path

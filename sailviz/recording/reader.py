@@ -257,7 +257,7 @@ def latest_static(batches: list[pa.RecordBatch]) -> dict[str, pa.Array]:
     for batch in batches:
         for row, row_id in enumerate(batch.column(ROW_ID).to_pylist()):
             for name in batch.schema.names:
-                if name == ROW_ID or batch.column(name)[row].as_py() is None:
+                if name == ROW_ID or not batch.column(name)[row].is_valid:
                     continue
                 if name not in latest or row_id > latest[name][0]:
                     latest[name] = (row_id, batch.column(name).slice(row, 1))
@@ -291,7 +291,7 @@ def is_component(kind: pa.DataType) -> bool:
 
 
 def to_numpy(column) -> np.ndarray:
-    """A component column with k values a row -> (n,) for one, (n, k) for fixed-size lists, objects where rows differ."""
+    """A component column with k values a row -> (n,) for k = 1, (n, k) for k > 1, objects where rows differ in k."""
     column = column.combine_chunks() if isinstance(column, pa.ChunkedArray) else column
     rows = len(column)
     counts = np.asarray(column.value_lengths().fill_null(0))

@@ -18,11 +18,11 @@ import numpy as np
 from sailviz.compiled import compiled, inlined
 from sailviz.propagate import dop853_coefficients as c
 from sailviz.propagate.dynamics import MU, SIZE, SURFACE_RADIUS, derivative
-from sailviz.propagate.events import END_OF_USE, RADIUS, STOP, measure
+from sailviz.propagate.events import APSIS, END_OF_USE, RADIUS, STOP, measure
 
 SAFETY, SHRINK_MOST, GROW_MOST = 0.9, 0.333, 6.0  # of the step-size controller: Hairer's values
 EVENT_SAMPLES = 4  # per step, so that two crossings inside one step are seen
-MOST_EVENTS = 4096  # recorded between two calls
+MOST_EVENTS = 4096  # recorded between two calls, and then those of one more step
 
 # status of `advance`
 DONE, STOPPED, EVENTS_FULL, UNDERFLOW, NOT_FINITE, SURFACE = range(6)
@@ -42,7 +42,7 @@ class Integration(NamedTuple):
     work: np.ndarray  # (28, SIZE) sixteen stages, the first the derivative at the state; then the rows named above
     count: np.ndarray  # (8,) int64, see the places above
     sign: np.ndarray  # (events,) event functions at the state
-    event: np.ndarray  # (MOST_EVENTS, 9) index in the watch, time s, state
+    event: np.ndarray  # (MOST_EVENTS and those of one step, 9) index in the watch, time s, state
 
 
 def start(t, position, velocity, mass, events=0) -> Integration:
@@ -52,7 +52,8 @@ def start(t, position, velocity, mass, events=0) -> Integration:
     work[CLOCK, _T] = work[CLOCK, _DENSE_START] = t
     count = np.zeros(8, dtype=np.int64)
     count[_IN_USE] = 1
-    return Integration(work, count, np.zeros(events), np.zeros((MOST_EVENTS if events else 1, 9)))
+    of_one_step = EVENT_SAMPLES * events + 1  # each sample may see each event once, and then there is the surface
+    return Integration(work, count, np.zeros(events), np.zeros((MOST_EVENTS * (events > 0) + of_one_step, 9)))
 
 
 def time(s: Integration) -> float:
@@ -115,8 +116,9 @@ def _error(k, h, mu):
 
 
 @inlined
-def _stages(t, h, factor, model, k):
+def _stages(t, h, end, factor, model, k):
     """The stages 2 to 12 of a step, the new state, and stage 13, the derivative there: k[i - 1] = f(t + C_i h, k[W]).
+    end is the time of the last two, t + h or a moment before it.
 
     Written out: a loop over stages would compile no faster and run at half the speed.
     """
@@ -166,13 +168,13 @@ def _stages(t, h, factor, model, k):
             c.A12_1 * k[0, j] + c.A12_4 * k[3, j] + c.A12_5 * k[4, j] + c.A12_6 * k[5, j] + c.A12_7 * k[6, j]
             + c.A12_8 * k[7, j] + c.A12_9 * k[8, j] + c.A12_10 * k[9, j] + c.A12_11 * k[10, j]
         )  # fmt: skip
-    derivative(t + h, k[W], factor, model, k[11])
+    derivative(end, k[W], factor, model, k[11])
     for j in range(SIZE):
         k[NEW, j] = k[Y, j] + h * (
             c.A13_1 * k[0, j] + c.A13_6 * k[5, j] + c.A13_7 * k[6, j] + c.A13_8 * k[7, j] + c.A13_9 * k[8, j]
             + c.A13_10 * k[9, j] + c.A13_11 * k[10, j] + c.A13_12 * k[11, j]
         )  # fmt: skip
-    derivative(t + h, k[NEW], factor, model, k[12])
+    derivative(end, k[NEW], factor, model, k[12])
 
 
 @inlined
@@ -375,7 +377,7 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
             continue
         if ended:
             break
-        if count[_EVENTS] > MOST_EVENTS - 64:
+        if count[_EVENTS] > MOST_EVENTS:
             count[_STATUS] = EVENTS_FULL
             break
         # one accepted step, landing on the next kink of the thrust or on the end
@@ -392,7 +394,8 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
             if h <= 4.0e-16 * max(abs(t), abs(t_end)) and not landing:
                 count[_STATUS] = UNDERFLOW
                 break
-            _stages(t, h, factor, model, k)
+            # a step that lands on a kink sees the steering table as it is before the kink
+            _stages(t, h, np.nextafter(limit, t) if landing else t + h, factor, model, k)
             error = _error(k, h, mu) / tolerance
             if error < 1.0:
                 break
@@ -416,13 +419,19 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
         count[_STEPS] += 1
         t0 = t
         t = limit if landing else t + h
+        # below the surface at its end, or through a periapsis that may lie below it
         touched = new[0] * new[0] + new[1] * new[1] + new[2] * new[2] < surface * surface
+        passed = surface > 0.0 and measure(APSIS, 0.0, y, mu) < 0.0 and measure(APSIS, 0.0, new, mu) > 0.0
         clock[_DENSE_START], clock[_DENSE_STEP] = t0, h
-        if watched > 0 or touched or t_out[row] < t:
+        if watched > 0 or touched or passed or t_out[row] < t:
             _interpolant(t0, h, factor, model, k, m)
         stop_x, stop_index, contact = 2.0, -1, 2.0
+        lowest = 1.0
+        if passed:
+            lowest = _root(m, APSIS, 0.0, mu, 0.0, 1.0, -1.0, w)
+            touched = measure(RADIUS, surface, w, mu) < 0.0
         if touched:
-            contact = _root(m, RADIUS, surface, mu, 0.0, 1.0, 1.0, w)
+            contact = _root(m, RADIUS, surface, mu, 0.0, lowest, 1.0, w)
         if watched > 0:
             stop_x, stop_index = _find_events(s, watch, t0, h, min(contact, 1.0), mu, w)
         if contact < min(stop_x, 2.0):

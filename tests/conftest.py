@@ -1,0 +1,86 @@
+"""What several test modules share: one propagation in canonical units, and the runs that would be dear to repeat."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+
+import sailviz
+from sailviz.propagate import dop853, dynamics
+from sailviz.propagate.events import watch
+from sailviz.shipped import shipped_scenes
+
+
+class Flight(NamedTuple):
+    """states (6 or 7, n) at the times asked for, as far as they were reached; events [(index, time, state (7,))]."""
+
+    states: np.ndarray
+    events: list
+    status: int
+    integration: dop853.Integration
+
+    @property
+    def position(self):
+        return self.states[:3].T
+
+    @property
+    def velocity(self):
+        return self.states[3:6].T
+
+
+def _fly(
+    model=None,
+    position=(1.0, 0.0, 0.0),
+    velocity=(0.0, 1.0, 0.0),
+    times=(1.0,),
+    *,
+    mass=1.0,
+    tolerance=1e-13,
+    events=(),
+    breaks=(0.0,),
+    factors=(1.0,),
+    block=None,
+    components=6,
+    largest_step=np.inf,
+):
+    """Propagate in canonical units (mu = 1 unless the model says otherwise); events as (kind, level, sense, action)."""
+    model = dynamics.model(1.0) if model is None else model
+    times = np.asarray(times, dtype=float)
+    s = dop853.start(0.0, position, velocity, mass, events=len(events))
+    out, found, status, done = np.full((components, len(times)), np.nan), [], dop853.DONE, 0
+    size = block or len(times)
+    for first in range(0, len(times), size):
+        part = times[first : first + size]
+        chunk = np.empty((components, len(part)))
+        arguments = (np.asarray(breaks, float), np.asarray(factors, float), watch(events), part, chunk, times[-1])
+        status = dop853.EVENTS_FULL
+        while status == dop853.EVENTS_FULL:
+            status = dop853.advance(s, model, *arguments, tolerance, largest_step)
+            found += dop853.drain_events(s)
+        rows = dop853.rows_done(s)
+        out[:, first : first + rows] = chunk[:, :rows]
+        done = first + rows
+        if status != dop853.DONE:
+            break
+    return Flight(out[:, :done], found, status, s)
+
+
+@pytest.fixture(scope="session")
+def fly():
+    return _fly
+
+
+@pytest.fixture(scope="session")
+def shipped_run():
+    """shipped_run(name) -> (Scene, Run) of a shipped scene, computed once."""
+    runs = {}
+
+    def run(name):
+        if name not in runs:
+            scene = sailviz.load_scene(str(shipped_scenes()[name]))
+            runs[name] = scene, sailviz.simulate(scene)
+        return runs[name]
+
+    return run

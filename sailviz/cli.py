@@ -7,6 +7,7 @@ Exit codes: 0 all went well, 1 an expectation of a scene failed, 2 bad input, 3 
 from __future__ import annotations
 
 import json
+import os
 import sys
 import tomllib
 from contextlib import contextmanager
@@ -206,7 +207,7 @@ def _run_one(name, values, sinks, quiet, failures):
         for verdict in verdicts:
             click.echo(f"  {verdict}")
         for path in recorded.paths:
-            click.echo(f"Recorded {path}; look at it with: rerun {path}")
+            click.echo(f"Recorded {path}; look at it with: {_rerun()} {path}")
     failed = [verdict for verdict in verdicts if not verdict.passed]
     if failed:
         failures.worst(EXPECTATION_FAILED)
@@ -216,6 +217,16 @@ def _run_one(name, values, sinks, quiet, failures):
     if recorded.url:
         click.echo(f"Watch it at {recorded.url} ; Ctrl-C ends it.", err=True)
         recorded.serve()
+
+
+def _rerun() -> str:
+    """How this person calls the viewer: by its name if the shell finds it, else by its path."""
+    import shutil
+
+    if shutil.which("rerun"):
+        return "rerun"
+    beside = Path(sys.executable).with_name("rerun")
+    return os.path.relpath(beside) if Path.cwd() in beside.parents else str(beside)
 
 
 def _say_unfinished(recorder, seconds):

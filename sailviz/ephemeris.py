@@ -58,11 +58,14 @@ def planet_elements(name, seconds):
 
 
 def _eccentric_anomaly(mean, e):
-    """Kepler's equation by Newton from Danby's start; planets need six iterations at most."""
+    """Kepler's equation by Newton from Danby's start; planets need three or four iterations."""
     mean = np.remainder(mean + np.pi, 2 * np.pi) - np.pi
     anomaly = mean + 0.85 * np.sign(np.sin(mean)) * e
     for _ in range(10):
-        anomaly = anomaly - (anomaly - e * np.sin(anomaly) - mean) / (1 - e * np.cos(anomaly))
+        step = (anomaly - e * np.sin(anomaly) - mean) / (1 - e * np.cos(anomaly))
+        anomaly = anomaly - step
+        if np.abs(step).max() < 1e-14:
+            break
     return anomaly
 
 

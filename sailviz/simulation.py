@@ -372,12 +372,15 @@ def _blocks(p: Plan, block_rows, progress):
         if ended:  # the state at the event is the last row
             now = dop853.time(state)
             if not len(columns[0]) or columns[0][-1] < now:
-                end = np.append(now, dop853.state(state))[:, None]
-                columns = (np.append(columns[0], now), np.hstack([columns[1], end[1:]]))
+                end = dop853.state(state)[:, None]
+                columns = (np.append(columns[0], now), np.hstack([columns[1], end]))
         if len(columns[0]):
-            block = _observed(p, columns[0], columns[1], first, off_time)
-            setting = setting or _setting(p, block, rows)
-            yield replace(block, setting=setting, events=tuple(found), ended=ended)
+            if setting is None:
+                planets = _planets_in_view(p, columns[1])
+                setting = _setting(p, planets, rows)
+            block = _observed(p, *columns, first, off_time)
+            bodies = _bodies(p, planets, block.time)
+            yield replace(block, setting=setting, bodies=bodies, events=tuple(found), ended=ended)
         if status in (dop853.UNDERFLOW, dop853.NOT_FINITE):
             reason = "The step size fell below the resolution of time"
             if status == dop853.NOT_FINITE:
@@ -464,7 +467,7 @@ def _observed(p: Plan, time, states, first, off_time) -> Run:
         thrust,
         orbital.elements(position, velocity, p.body.mu),
         environment,
-        _bodies(p, time),
+        {},
     )
 
 
@@ -472,19 +475,27 @@ def _epoch(scene) -> np.datetime64 | None:
     return None if scene.epoch_utc is None else np.datetime64(scene.epoch_utc, "ns")
 
 
-def _bodies(p: Plan, time):
+def _planets_in_view(p: Plan, states) -> dict[str, np.ndarray]:
+    """Name -> orbit (k, 3) m of the planets that come within sight of the first block of a heliocentric run."""
+    if p.body.name != "Sun":
+        return {}
+    reach = 1.15 * np.linalg.norm(states[:3], axis=0).max()
+    orbits = {name: ephemeris.planet_orbit(name, _epoch(p.scene)) for name in ephemeris.PLANETS}
+    return {name: orbit for name, orbit in orbits.items() if np.linalg.norm(orbit, axis=1).min() <= reach}
+
+
+def _bodies(p: Plan, planets, time) -> dict[str, np.ndarray]:
+    """Positions (n, 3) m of what is drawn beside the craft; nothing without an epoch."""
     epoch = _epoch(p.scene)
     if epoch is None:
         return {}
     if p.body.name == "Earth":
         return {"Sun": ephemeris.sun_position(epoch, time)}
-    if p.body.name == "Sun":
-        return {name: ephemeris.planet_position(name, epoch, time) for name in ephemeris.PLANETS}
-    return {}
+    return {name: ephemeris.planet_position(name, epoch, time) for name in planets}
 
 
 # ---------------------------------------------------------------- what the picture needs to know
-def _setting(p: Plan, block: Run, rows) -> Setting:
+def _setting(p: Plan, planets, rows) -> Setting:
     scene = p.scene
     duration = scene.propagation.duration
     return Setting(
@@ -498,7 +509,7 @@ def _setting(p: Plan, block: Run, rows) -> Setting:
         duration=duration,
         rows=rows,
         epoch=_epoch(scene),
-        references=_references(p, block),
+        references=_references(p, planets),
         parameters=tuple(parameters_in_words(scene, p.design, _words_strength(scene, p.design))),
         text=scene.text,
         resolved=scene.resolved(),
@@ -548,8 +559,8 @@ def _words_strength(scene, design):
     return _sail_strength(scene, design) if scene.device.kind in ("solar-sail", "electric-sail") else None
 
 
-def _references(p: Plan, block: Run) -> tuple[Reference, ...]:
-    """Curves that are there from the start: the orbit designed, the orbit departed from, the planets' orbits in view."""
+def _references(p: Plan, planets) -> tuple[Reference, ...]:
+    """Curves that are there from the start: the orbit designed, the orbit departed from, the planets' orbits."""
     found = []
     start = p.scene.start
     turn = np.linspace(0, 2 * np.pi, 361)
@@ -564,10 +575,5 @@ def _references(p: Plan, block: Run) -> tuple[Reference, ...]:
                 e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument, turn, p.body.mu
             )[0]
             found.append(Reference("initial orbit", "initial", curve))
-    if p.body.name == "Sun":
-        reach = np.linalg.norm(block.position, axis=1).max()
-        for name in ephemeris.PLANETS:
-            orbit = ephemeris.planet_orbit(name, _epoch(p.scene))
-            if np.linalg.norm(orbit, axis=1).min() <= 1.15 * reach:
-                found.append(Reference(name, "planet", orbit))
+    found += [Reference(name, "planet", orbit) for name, orbit in planets.items()]
     return tuple(found)

@@ -129,7 +129,7 @@ def slowed(run: Run, number, frame: Frame):
     e = run.elements
     shown = frame.longitude + 2 * np.pi * min(TURNS, frame.turns) * number / max(frame.rows - 1, 1)
     closed = e.eccentricity < 1
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore"):
         anomaly = np.where(closed, shown - e.raan - e.argument, e.true_anomaly)
         position, velocity = state(
             e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument, anomaly, frame.mu

@@ -10,16 +10,31 @@ import numba
 _OPTIONS = {"error_model": "numpy", "fastmath": {"contract", "nsz"}, "nogil": True}
 
 
+_PACKAGE = Path(__file__).parent
+_WITH_COMPILED_CODE = ("compiled.py", "constants.py", "steering.py", "*/[!_]*.py")
+_SOURCES = tuple(
+    (path.name, path.stat().st_mtime_ns, path.stat().st_size)
+    for pattern in _WITH_COMPILED_CODE
+    for path in sorted(_PACKAGE.glob(pattern))
+    if path.parent.name not in ("recording", "figures")
+)
+
+
 def compiled(function):
     """Compile a module-level function of scalars and arrays on first use and keep the machine code on disk.
 
     numba honours NUMBA_CACHE_DIR, then tries the package's __pycache__, then the user's cache folder; where none of them
-    can be written the function is compiled anew in every process.
+    can be written the function is compiled anew in every process. The code on disk holds for the sources it was made of:
+    numba itself looks at the function's own file only, and would miss a change in a function that this one calls.
     """
     try:
-        return numba.njit(cache=True, **_OPTIONS)(function)
+        dispatcher = numba.njit(cache=True, **_OPTIONS)(function)
     except RuntimeError:  # "no locator available": nowhere to write
         return numba.njit(**_OPTIONS)(function)
+    file = getattr(dispatcher._cache, "_cache_file", None)
+    if hasattr(file, "_source_stamp"):
+        file._source_stamp = (file._source_stamp, _SOURCES)
+    return dispatcher
 
 
 def inlined(function):
@@ -37,11 +52,11 @@ def called(function):
 
 
 def is_compiled(function) -> bool:
-    """Whether the machine code of a `compiled` function is in memory or on disk already. A guess from the cache's index
-    file: it only decides whether a person is told to wait."""
+    """Whether the machine code of a `compiled` function is in memory or on disk already. A guess: it only decides whether a
+    person is told to wait."""
     if function.signatures:
         return True
     try:
-        return Path(function._cache._cache_file._index_path).exists()
-    except AttributeError:  # no cache, or another numba
+        return bool(function._cache._cache_file._load_index())
+    except (AttributeError, OSError):  # no cache, or another numba
         return False

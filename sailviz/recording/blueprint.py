@@ -65,8 +65,7 @@ def event_columns(layout: Layout) -> TextLogColumns:
 
 
 def space_view(layout: Layout, camera: Camera) -> rrb.Spatial3DView:
-    far = [f"- /world/{group}/{name}/**" for name in layout.hidden for group in ("planets", "names")]
-    contents = ["+ /world/**", *far]
+    contents = ["+ /world/**", *(f"- {path}/**" for path in layout.hidden)]
     if camera.name == "Follow":
         contents += ["- /world/names/**", "- /world/night/umbra"]  # labels show through; the umbra's wall would be near
     return rrb.Spatial3DView(

@@ -17,11 +17,11 @@ def directions(elevations, step: float = 10.0) -> np.ndarray:
     ).reshape(-1, 3)
 
 
-def apart(arrows, facing=None, open_to=None, elevations=(12, 20, 28, 36, 44)) -> np.ndarray:
+def apart(arrows, facing=None, slanted=None, open_to=None, elevations=(12, 20, 28, 36, 44)) -> np.ndarray:
     """Direction from which arrows from the origin look long and well separated. arrows (k, 3) -> (3,) unit.
 
-    `facing` is the normal of a sail whose sunward side should be seen at a slant of about 70 degrees, `open_to` the
-    normal of a plane that should not be seen edge-on.
+    facing : the normal of a film whose sunward side should be seen at a slant of about 70 degrees; slanted : the
+    normal of a wheel, and open_to : that of a plane, neither of which should be seen edge-on.
     """
     arrows = unit(np.asarray(arrows, float))
     eyes = directions(elevations)
@@ -29,16 +29,13 @@ def apart(arrows, facing=None, open_to=None, elevations=(12, 20, 28, 36, 44)) ->
     up = np.cross(eyes, right)
     flat = np.stack([right @ arrows.T, up @ arrows.T], -1)  # (eyes, arrows, 2)
     length = np.linalg.norm(flat, axis=-1)
-    bearing = np.arctan2(flat[..., 1], flat[..., 0])
-    gaps = [
-        np.abs((bearing[:, i] - bearing[:, j] + np.pi) % (2 * np.pi) - np.pi)
-        for i in range(len(arrows))
-        for j in range(i)
-    ]
-    closest = np.min(gaps, axis=0) if gaps else 0.7
-    score = 1.2 * np.minimum(closest, 0.7) + 0.6 * length.min(1) + 0.25 * length.mean(1)
+    gaps = [np.linalg.norm(flat[:, i] - flat[:, j], axis=-1) for i in range(len(arrows)) for j in range(i)]
+    closest = np.min(gaps, axis=0) if gaps else 0.45
+    score = 1.8 * np.minimum(closest, 0.45) + 0.6 * length.min(1) + 0.25 * length.mean(1)
     if facing is not None:
         score = score + 1.2 * (1 - np.abs(-(eyes @ facing) - 0.36) / 0.36)
+    if slanted is not None:
+        score = score + 1.2 * np.minimum(np.abs(eyes @ slanted), 0.4) / 0.4
     if open_to is not None:
         score = score + 0.9 * np.abs(eyes @ open_to)
     return eyes[np.argmax(score)]

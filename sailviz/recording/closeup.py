@@ -50,16 +50,19 @@ class SailCloseUp:
         craft.draw(pen, "/sail/body/shape", self._kind, near=True)
         if self._kind == "thruster":
             craft.plume(pen, "/sail/body/shape/plume")
+        self._glow = craft.Glow(pen, "/sail/body", self._kind)
         pen.scale("/sail/body/shape", SIZE.get(self._kind, 9.0))
         if first.setting.body.name == "Sun":
             self._draw_flow()
         pen.lines("/sail/radial", [[[0, 0, 0], [12, 0, 0]]], [130, 104, 44], look.WIDTH["helper"])
-        pen.arrow_style("/sail/normal", look.NORMAL, look.WIDTH["close arrow"])
+        self._axis = self._kind != "thruster"  # a thruster's normal is its thrust
+        if self._axis:
+            pen.arrow_style("/sail/normal", look.NORMAL, look.WIDTH["close arrow"])
+            pen.label_style("/sail/normal/name", look.NORMAL, "normal")
         pen.arrow_style("/sail/velocity", look.VELOCITY, look.WIDTH["close arrow"])
         pen.arrow_style("/sail/force/arrow", look.THRUST, look.WIDTH["close thrust"])
-        pen.label_style("/sail/normal/name", look.NORMAL, "thrust axis" if self._kind == "thruster" else "normal")
         pen.label_style("/sail/velocity/name", look.VELOCITY, "velocity")
-        pen.label_style("/sail/force_name" if self._kind == "solar-sail" else "/sail/force/name", look.THRUST)
+        pen.label_style("/sail/force_name", look.THRUST)
         pen.strip_style("/sail/pitch/arc", look.PITCH, look.WIDTH["arc"])
         corners = np.arange(1, ARC)
         fan = np.stack([0 * corners, corners, corners + 1], 1).astype(np.uint32)
@@ -75,25 +78,27 @@ class SailCloseUp:
         """What comes from the Sun: light, or the wind on an E-sail."""
         wind = self._kind == "electric-sail"
         color = look.WIND if wind else look.SUN
-        origins = [[-15, y, z] for y in (-6, 0, 6) for z in (-6, 0, 6)]
+        origins = [[-12, y, z] for y in (-5, 0, 5) for z in (-5, 0, 5)]
         self._pen.static(
             "/sail/flow",
             rr.Arrows3D(
                 origins=origins,
-                vectors=[[4.2, 0, 0]] * len(origins),
+                vectors=[[3.6, 0, 0]] * len(origins),
                 colors=[look.dim(color, 0.6)],
                 radii=points(look.WIDTH["flow"]),
             ),
         )
-        self._pen.label("/sail/flow/name", "solar wind" if wind else "sunlight", color, (-13, 0, -7.2))
+        self._pen.label("/sail/flow/name", "solar wind" if wind else "sunlight", color, (-9.0, 0, 6.0))
 
     def add(self, samples: Samples) -> None:
         pen, index, count = self._pen, samples.index, len(samples)
         normal, velocity = samples.normal_rtn, samples.velocity_rtn
         axes = body_axes(normal, np.tile([0.0, 1.0, 0.0], (count, 1)))
         pen.move("/sail/body", index, quaternion=quaternion(axes))
-        pen.arrows("/sail/normal", index, self._length * normal)
-        pen.labels("/sail/normal/name", index, 1.06 * self._length * normal)
+        self._glow.add(samples.index_of, samples.run.thrust.on)
+        if self._axis:
+            pen.arrows("/sail/normal", index, self._length * normal)
+            pen.labels("/sail/normal/name", index, 1.06 * self._length * normal)
         pen.arrows("/sail/velocity", index, VELOCITY_LENGTH * velocity)
         pen.labels("/sail/velocity/name", index, 1.06 * VELOCITY_LENGTH * velocity)
         self._add_force(samples)
@@ -104,10 +109,7 @@ class SailCloseUp:
         root = np.sqrt(size)[:, None] * unit(thrust)
         self._pen.arrows("/sail/force/arrow", samples.index, root)
         texts = [f"thrust {acceleration_text(a)}" if a > 0 else "no thrust" for a in size.tolist()]
-        if self._kind == "solar-sail":  # on the normal, or near it: its label would cover the others
-            self._pen.labels("/sail/force_name", samples.index, np.tile([0.0, 0.0, -10.5], (len(samples), 1)), texts)
-        else:
-            self._pen.labels("/sail/force/name", samples.index, 1.16 * root, texts)
+        self._pen.columns("/sail/force_name", samples.index, rr.Points3D.columns(labels=texts))
 
     def _add_angles(self, samples: Samples) -> None:
         """Pitch as a fan from the radial direction to the normal, cone as an arc to the thrust, clock on the normal's
@@ -147,10 +149,15 @@ class SailCloseUp:
         # where the angle starts, but on the far side of the circle where the normal's own label is near
         near = np.clip(1 - np.minimum(clock, 2 * np.pi - clock) / np.radians(60), 0, 1)
         place = on_circle((np.pi * near)[:, None])[:, 0] * [1.0, 1.15, 1.15]
+        place[:, 2] -= np.clip(4.0 - radius, 0, None)  # a small circle would lie under its own label
         pen.labels("/sail/clock/name", index, place, angle_texts("clock", clock))
 
     def size(self, layout: Layout) -> None:
         self._pen.scale("/sail/force", layout.close_thrust_scale)
+        # under the craft as the camera sees it, not at the arrow's tip, which often lies among those of other arrows
+        eye = unit(np.array(layout.close_up.position))
+        down = unit(eye[2] * eye - [0.0, 0.0, 1.0])
+        self._pen.static("/sail/force_name", rr.Points3D.from_fields(positions=[f4(9.3 * down)]))
 
 
 class TetherCloseUp:
@@ -163,6 +170,7 @@ class TetherCloseUp:
         craft.draw(pen, "/sail/body/shape", "plasma-brake", near=True)
         pen.scale("/sail/body/shape", 5.0)
         craft.tether(pen, "/sail/body/tether", 0.06, 1.8, 0.04, near=True)
+        self._glow = craft.Glow(pen, "/sail/body", "plasma-brake")
         pen.scale("/sail/body/tether", TETHER)
         if first.setting.body.radius > 0:
             draw_planet(pen, "/sail/planet/shape", first.setting.body.name, dimmed=True)
@@ -183,6 +191,7 @@ class TetherCloseUp:
         axes = body_axes(normal, np.tile([0.0, 1.0, 0.0], (count, 1)))
         axes = axes[..., [1, 0, 2]] * [-1.0, 1.0, 1.0]  # panels across the flight direction
         pen.move("/sail/body", index, quaternion=quaternion(axes))
+        self._glow.add(samples.index_of, samples.run.thrust.on)
         pen.arrows("/sail/velocity", index, 8.0 * velocity)
         pen.labels("/sail/velocity/name", index, 8.6 * velocity)
         size = samples.run.thrust.magnitude
@@ -194,7 +203,7 @@ class TetherCloseUp:
         arrows = np.broadcast_to(root[:, None, :], (count, ARROWS, 3))
         self._add_many("/sail/body/force/arrows", index, arrows, np.broadcast_to(down, arrows.shape))
         texts = [f"drag {acceleration_text(a)}" if a > 0 else "no drag" for a in size.tolist()]
-        pen.labels("/sail/force_name", index, 0.5 * TETHER * -normal + 9.4 * unit(thrust), texts)
+        pen.labels("/sail/force_name", index, 0.5 * TETHER * -normal + 10.2 * unit(thrust), texts)
         origins = 9.0 * velocity[:, None, :] + np.array([[0, y, z] for y in (-1.5, 1.5) for z in (-3, -5.5, -8, -10.5)])
         self._add_many("/sail/flow", index, np.broadcast_to(-3.4 * velocity[:, None, :], origins.shape), origins)
 
@@ -205,7 +214,7 @@ class TetherCloseUp:
         self._pen.columns(path, index, columns.partition([vectors.shape[1]] * len(vectors)))
 
     def size(self, layout: Layout) -> None:
-        self._pen.scale("/sail/body/force", [0.75 * layout.close_thrust_scale, 0.75 * layout.close_thrust_scale, 1.0])
+        self._pen.scale("/sail/body/force", [0.65 * layout.close_thrust_scale, 0.65 * layout.close_thrust_scale, 1.0])
 
 
 def turned(rtn):

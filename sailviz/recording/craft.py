@@ -104,5 +104,25 @@ def plume(pen: Pen, path: str) -> None:
     )
 
 
+GLOWING = {"electric-sail": "shape/sheath", "plasma-brake": "tether/sheath", "thruster": "shape/plume"}
+
+
+class Glow:
+    """What of a craft only shows while it thrusts: the sheath of a charged tether, the plume of a thruster."""
+
+    def __init__(self, pen: Pen, body: str, kind: str):
+        self._pen, self._on = pen, None
+        self._path = f"{body}/{GLOWING[kind]}" if kind in GLOWING else None
+
+    def add(self, index_of, on) -> None:
+        """on (n,) bool; index_of(rows) gives the timelines of some of the rows. Only changes are written."""
+        before = not on[0] if self._on is None else self._on
+        changed = np.flatnonzero(np.diff(on, prepend=before))
+        self._on = bool(on[-1])
+        if self._path and len(changed):
+            scale = np.where(on[changed], 1.0, 1e-6)[:, None] * np.ones(3)
+            self._pen.columns(self._path, index_of(changed), rr.Transform3D.columns(scale=f4(scale)))
+
+
 def dot(pen: Pen, path: str, near: bool) -> None:
     pen.static(f"{path}/dot", rr.Points3D([[0, 0, 0]], radii=points(9.0 if near else 4.5), colors=[look.CRAFT]))

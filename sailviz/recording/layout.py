@@ -78,7 +78,7 @@ class Extents:
 
     def __init__(self):
         self.farthest = self.nearest = None  # m
-        self.highest = 0.0  # m above or below the plane x, y
+        self.lowest = self.highest = 0.0  # m from the plane x, y
         self.thrust = 0.0  # m/s2
         self.middle: Run | None = None  # the row in the middle of the run, or the last before it
         self.bodies: dict[str, float] = {}  # farthest distance of each, m
@@ -88,7 +88,8 @@ class Extents:
         low, high = float(distance.min()), float(distance.max())
         self.farthest = high if self.farthest is None else max(self.farthest, high)
         self.nearest = low if self.nearest is None else min(self.nearest, low)
-        self.highest = max(self.highest, float(np.abs(run.position[:, 2]).max()))
+        self.lowest = min(self.lowest, float(run.position[:, 2].min()))
+        self.highest = max(self.highest, float(run.position[:, 2].max()))
         self.thrust = max(self.thrust, float(run.thrust.magnitude.max()))
         for name, position in run.bodies.items():
             self.bodies[name] = max(self.bodies.get(name, 0.0), float(np.linalg.norm(position, axis=1).max()))
@@ -102,9 +103,6 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
     references = [float(np.linalg.norm(r.points, axis=1).max()) for r in setting.references if r.role != "planet"]
     radius = max([extents.farthest, *references]) / frame.unit
     middle = Samples.of(extents.middle, np.array([extents.middle.first]), frame)
-    hidden = [
-        name for name, far in planets(setting, extents).items() if far / frame.unit > look.PLANETS_WITHIN * radius
-    ]
     sail = look.SAIL.get(setting.craft.kind, 0.1) * radius
     tether = 0.0
     if not frame.sun and setting.body.radius > 0:
@@ -115,12 +113,11 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
     still = extents.farthest - extents.nearest < DEPARTING * extents.farthest
     closed = bool(still and turns > 1.2 and not frame.sparse)
     if frame.sun or setting.body.radius == 0:
-        views, tail = (
-            about_sun(radius, extents.highest / frame.unit, setting),
-            min(0.12 * setting.duration, 0.15 * revolution),
-        )
+        views = about_sun(radius, extents.lowest / frame.unit, extents.highest / frame.unit, setting)
+        tail = min(0.12 * setting.duration, 0.15 * revolution)
     else:
-        views, tail = about_planet(radius, middle, setting, frame), min(2.6 * revolution, 0.3 * setting.duration)
+        views = about_planet(radius, middle, setting)
+        tail = min(2.6 * revolution, 0.3 * setting.duration)
     names = name_views(views, setting, frame, sail, tether)
     timelines = ("sim_time", "step") if setting.epoch is None else ("utc", "sim_time", "step")
     shown, environment = plot_views(curves, frame, setting.craft.kind not in ("plasma-brake", "none"))
@@ -138,7 +135,7 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
         slots=slots,
         lanes=lanes,
         lane_share=lane_share,
-        hidden=tuple(hidden),
+        hidden=hidden_entities(setting, extents, radius * frame.unit),
         tail=tail,
         past=0.86 * revolution if closed else 0.0,
         future=not closed,
@@ -156,6 +153,17 @@ def planets(setting: Setting, extents: Extents) -> dict[str, float]:
     return far | {name: max(distance, far.get(name, 0.0)) for name, distance in extents.bodies.items() if name != "Sun"}
 
 
+def hidden_entities(setting: Setting, extents: Extents, reach: float) -> tuple[str, ...]:
+    """What would spoil the system view: planets far outside it, and names that would pile up in its centre."""
+    far = planets(setting, extents)
+    outside = [name for name, distance in far.items() if distance > look.PLANETS_WITHIN * reach]
+    inmost = [name for name, distance in far.items() if distance < look.NAMES_FROM * reach and name != "Earth"]
+    paths = [f"/world/planets/{name}" for name in outside] + [f"/world/names/{name}" for name in outside + inmost]
+    if far and min(far.values()) < 1.4 * look.NAMES_FROM * reach:
+        paths.append("/world/sun/name")
+    return tuple(paths)
+
+
 def revolution_time(row: Run) -> float:
     """s that the craft would take to go round at its angular speed in one row; the duration where it hardly moves."""
     position, velocity = row.position[0], row.velocity[0]
@@ -163,29 +171,35 @@ def revolution_time(row: Run) -> float:
     return float(min(2 * np.pi / rate, 20 * row.setting.duration)) if rate > 0 else row.setting.duration
 
 
-def about_sun(radius: float, height: float, setting: Setting) -> list[Camera]:
+def about_sun(radius: float, lowest: float, highest: float, setting: Setting) -> list[Camera]:
     """Cameras of a scene round the Sun: from outside, from the pole, along with the craft."""
-    lifted = height > 0.12 * radius
-    outside = np.array([0.23, -1.88, 0.86] if lifted else [0.1, -1.60, 1.01]) * radius
+    lifted = highest - lowest > 0.12 * radius
+    direction = unit(np.array([0.11, -0.90, 0.41] if lifted else [0.05, -0.84, 0.53]))
+    # the eye sees a third of its distance up and down: an orbit seen aslant and what rises above it must fit in
+    half = 0.5 * (highest - lowest) * np.hypot(*direction[:2]) + look.DISC_RADIUS * radius * direction[2]
+    distance = max((2.08 if lifted else 1.9) * radius, half / 0.33)
+    raised = 0.45 * (highest + lowest) if highest - lowest > 0.4 * radius else 0.0
+    middle = np.array([0.0, 0.0, 0.02 * radius + raised])
     sail = setting.craft.kind == "solar-sail"
     follow = np.array([-0.42, 0.50, 0.26] if sail else [0.30, -0.62, 0.26]) * radius
     return [
-        Camera("System", "/", tuple(outside.tolist()), (0.0, 0.0, 0.02 * radius)),
-        Camera("From the pole", "/", (0.0, -0.01 * radius, 2.45 * radius)),
+        Camera("System", "/", tuple((middle + distance * direction).tolist()), tuple(middle.tolist())),
+        Camera("From the pole", "/", (0.0, -0.01 * radius, max(2.45 * radius, 1.5 * highest))),
         Camera("Follow", "/world/rtn", tuple(follow.tolist()), (-0.12 * radius, 0.0, 0.0)),
     ]
 
 
-def about_planet(radius: float, middle: Samples, setting: Setting, frame: Frame) -> list[Camera]:
+def about_planet(radius: float, middle: Samples, setting: Setting) -> list[Camera]:
     """Cameras of a scene round a planet: over it, along with the craft, along the orbit's pole."""
     sun = middle.run.bodies.get("Sun")
     pole = middle.axes[0, :, 2]
     eye = cameras.over_planet(pole, None if sun is None else unit(sun[0])) * 2.6 * radius
     above = pole if (pole[2] if sun is None else pole @ unit(sun[0])) >= 0 else -pole  # the day side
     above = unit(above + 0.05 * middle.axes[0, :, 0]) * 2.6 * radius
+    follow = np.array([[0.30, -0.52, 0.24], [-0.06, 0.16, 0.0]]) * radius / 1.1  # tried on low orbits
     return [
         Camera(setting.body.name, "/", tuple(eye.tolist())),
-        Camera("Follow", "/world/rtn", (0.30, -0.52, 0.24), (-0.06, 0.16, 0.0), (1.0, 0.0, 0.0)),
+        Camera("Follow", "/world/rtn", *(tuple(point) for point in follow.tolist()), (1.0, 0.0, 0.0)),
         Camera("Orbit pole", "/", tuple(above.tolist())),
     ]
 
@@ -204,8 +218,9 @@ def close_up_camera(setting: Setting, middle: Samples) -> Camera:
     eye = cameras.apart(
         arrows,
         facing=normal if film else None,
+        slanted=normal if setting.craft.kind == "electric-sail" else None,
         open_to=unit(fan) if np.linalg.norm(fan) > 0.05 else None,
-        elevations=(20, 28, 36),
+        elevations=(20, 28, 36) if film else (20, 28, 36, 44, 52),
     )
     name = "Thruster close-up" if setting.craft.kind == "thruster" else f"{setting.craft.label or 'Craft'} close-up"
     return Camera(f"{name} (orbital frame)", "/sail", tuple((26.0 * eye).tolist()), (1.0, 0.0, 0.0))
@@ -249,6 +264,8 @@ def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple[PlotVi
     def view(path: str, **more) -> PlotView:
         plot = known[path]
         low, high = curves.reach(path)
+        if high - low < plot.noise:
+            low = high = round(0.5 * (low + high) / plot.noise) * plot.noise
         legend = "RightTop" if len(plot.names) > 1 else ""
         if plot.from_zero:
             low = min(low, 0.0)

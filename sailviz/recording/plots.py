@@ -28,6 +28,7 @@ class Plot:
     colors: tuple
     values: Callable[[Run], np.ndarray]
     from_zero: bool = False
+    noise: float = 0.0  # a change below it is rounding, and is not shown as a change
 
 
 UNITS = {  # ending of a name -> factor and unit on the plot; the longest that fits counts
@@ -57,48 +58,30 @@ def degrees(*columns) -> np.ndarray:
     return np.degrees(np.stack(columns, 1))
 
 
+def bound(semi_major_axis) -> np.ndarray:
+    """Semi-major axes of closed orbits; NaN, which is not drawn, for open ones, whose axes are negative."""
+    return np.where(semi_major_axis > 0, semi_major_axis, np.nan)
+
+
+def pitch_and_cone(run: Run) -> np.ndarray:
+    """Without thrust there is no cone angle."""
+    return degrees(run.attitude.pitch, np.where(run.thrust.magnitude > 0, run.attitude.cone, np.nan))
+
+
 def plots_of(first: Run, frame: Frame) -> list[Plot]:
     """All curves that are written of a run; the layout shows those that say something."""
-    body = first.setting.body
-    plots = []
-    if frame.sun or body.radius == 0:
-        unit, name = frame.unit, frame.unit_name
-        plots.append(
-            Plot(
-                "/plots/distance",
-                f"Distance r and semi-major axis a [{name}]",
-                ("r", "a"),
-                look.SERIES[:2],
-                lambda run: np.stack([np.linalg.norm(run.position, axis=1), run.elements.semi_major_axis], 1) / unit,
-            )
-        )
-    else:
-        plots.append(
-            Plot(
-                "/plots/altitude",
-                "Altitude [km]",
-                ("h", "a"),
-                look.SERIES[:2],
-                lambda run: (
-                    np.stack(
-                        [
-                            np.linalg.norm(run.position, axis=1) - body.radius,
-                            run.elements.semi_major_axis - body.radius,
-                        ],
-                        1,
-                    )
-                    / 1e3
-                ),
-            )
-        )
-    thrust_unit, thrust_name = thrust_units(first)
-    plots += [
+    unit, name = thrust_units(first)
+    kind = "Drag" if first.setting.craft.kind == "plasma-brake" else "Thrust"
+    environment = [name for name, values in first.environment.items() if values.dtype != bool]
+    return [
+        distance_plot(first, frame),
         Plot(
             "/plots/inclination",
             "Inclination [deg]",
             ("i",),
             look.SERIES[2:3],
             lambda run: degrees(run.elements.inclination),
+            noise=1e-3,
         ),
         Plot(
             "/plots/eccentricity",
@@ -112,28 +95,50 @@ def plots_of(first: Run, frame: Frame) -> list[Plot]:
             "Pitch and cone angle [deg]",
             ("pitch", "cone"),
             (look.PITCH, look.CONE),
-            lambda run: degrees(run.attitude.pitch, np.where(run.thrust.magnitude > 0, run.attitude.cone, np.nan)),
+            pitch_and_cone,
+            noise=1e-3,
         ),
-        Plot("/plots/clock", "Clock angle [deg]", ("clock",), (look.CLOCK,), lambda run: degrees(run.attitude.clock)),
+        Plot(
+            "/plots/clock",
+            "Clock angle [deg]",
+            ("clock",),
+            (look.CLOCK,),
+            lambda run: degrees(run.attitude.clock),
+            noise=1e-3,
+        ),
         Plot(
             "/plots/thrust",
-            f"Thrust acceleration [{thrust_name}]",
-            ("thrust",),
+            f"{kind} acceleration [{name}]",
+            (kind.lower(),),
             (look.THRUST,),
-            lambda run: thrust_unit * run.thrust.magnitude[:, None],
+            lambda run: unit * run.thrust.magnitude[:, None],
             from_zero=True,
         ),
+        *(environment_plot(name, look.SERIES[(4 + k) % 5]) for k, name in enumerate(environment)),
     ]
-    names = [name for name, values in first.environment.items() if values.dtype != bool]
-    return plots + [environment_plot(name, look.SERIES[(4 + k) % 5]) for k, name in enumerate(names)]
+
+
+def distance_plot(first: Run, frame: Frame) -> Plot:
+    """Distance and semi-major axis: over a planet from its surface, in km, elsewhere from the centre, in view units."""
+    radius = 0.0 if frame.sun else first.setting.body.radius
+    unit = 1e3 if radius else frame.unit
+
+    def values(run: Run) -> np.ndarray:
+        r, a = np.linalg.norm(run.position, axis=1), bound(run.elements.semi_major_axis)
+        return (np.stack([r, a], 1) - radius) / unit
+
+    if radius:
+        return Plot("/plots/altitude", "Altitude [km]", ("h", "a - R"), look.SERIES[:2], values)
+    title = f"Distance r and semi-major axis a [{frame.unit_name}]"
+    return Plot("/plots/distance", title, ("r", "a"), look.SERIES[:2], values)
 
 
 def thrust_units(first: Run) -> tuple[float, str]:
     """The unit in which the first row's thrust is a handy number: the factor from m/s2, and its name."""
     size = float(first.thrust.magnitude[0])
-    if size == 0 or size >= 1e-5:
+    if size == 0 or size >= 0.0995e-3:
         return 1e3, "mm/s²"
-    return (1e6, "µm/s²") if size >= 1e-8 else (1e9, "nm/s²")
+    return (1e6, "µm/s²") if size >= 0.0995e-6 else (1e9, "nm/s²")
 
 
 def environment_plot(name: str, color) -> Plot:

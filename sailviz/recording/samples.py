@@ -123,6 +123,10 @@ class Samples:
     def __len__(self) -> int:
         return len(self.number)
 
+    def index_of(self, some) -> list:
+        """The timelines of some of the rows."""
+        return rows.timelines(self.run.setting, self.number[some], self.run.time[some])
+
 
 def slowed(run: Run, number, frame: Frame):
     """Places and velocities on the osculating orbits that go round evenly, `TURNS` times over the whole run."""

@@ -15,7 +15,7 @@ import rerun as rr
 
 import sailviz
 from sailviz.frames import body_axes, from_frame, quaternion, unit
-from sailviz.recording import craft, look, meshes, rows
+from sailviz.recording import craft, look, meshes
 from sailviz.recording.layout import Layout
 from sailviz.recording.look import points
 from sailviz.recording.pen import Pen, f4
@@ -72,6 +72,7 @@ class World:
             craft.tether(pen, "/world/craft/body/tether", 0.0, 1.2, 0.1, near=False)
         if kind == "thruster":
             craft.plume(pen, "/world/craft/body/shape/plume")
+        self._glow = craft.Glow(pen, "/world/craft/body", kind)
         pen.arrow_style("/world/craft/thrust/arrow", look.THRUST, look.WIDTH["thrust"])
         pen.arrow_style("/world/craft/velocity/arrow", look.VELOCITY, look.WIDTH["velocity"])
 
@@ -98,6 +99,7 @@ class World:
         pen.move("/world/rtn", index, translation=samples.position, quaternion=quaternion(samples.axes))
         normal = from_frame(samples.axes, samples.normal_rtn)
         pen.move("/world/craft/body", index, quaternion=quaternion(body_axes(normal, samples.axes[..., 1])))
+        self._glow.add(samples.index_of, samples.run.thrust.on)
         pen.arrows("/world/craft/thrust/arrow", index, from_frame(samples.axes, samples.thrust_rtn))
         pen.arrows("/world/craft/velocity/arrow", index, from_frame(samples.axes, samples.velocity_rtn))
         for name, position in samples.run.bodies.items():
@@ -137,7 +139,7 @@ class World:
             first = start + STRIP * np.arange(number)
             strips = line[first[:, None] * pieces + np.arange(length * pieces + 1)]
             ends = first + length - 1
-            index = rows.timelines(self._setting, samples.number[ends], samples.run.time[ends])
+            index = samples.index_of(ends)
             colors = self._ramp(samples)[ends] if self._planet else None
             for part in ("recent",) if self._planet else ("recent", "past", "future"):
                 self._pen.strips(f"/world/trail/{part}", index, strips, colors)

@@ -25,7 +25,10 @@ def lit(path):
 def test_every_view_shows_something_without_a_complaint(recorded_family, tmp_path):
     name, path = recorded_family
     with Studio(path, size=(640, 440)) as studio:
+        spaces = ["System", "Earth", "From the pole", "Orbit pole", "Follow", "close-up", "About"]
         for view in studio.views:
+            if name != "spirals" and not any(word in view for word in spaces):
+                continue  # curves look alike in every family
             report = studio.shoot(tmp_path / "view.png", view=view, at=0.4)
             assert report.errors == (), f"{name} {view}"
             assert lit(report.path) > (0.0005 if view == "Events" else 0.004), f"{name} {view} is empty"

@@ -39,11 +39,12 @@ def force_per_length(density, ion_mass, speed, voltage, wire_radius=1e-3, polari
 
 @inlined
 def negative_force_per_length(density, ion_mass, speed, voltage, wire_radius):
-    """`force_per_length` for scalars inside the propagator, negative polarity."""
+    """`force_per_length` for scalars inside the propagator, negative polarity; NaN outside its range as there."""
     ram_pressure = ion_mass * density * speed * speed
     ram_energy = ion_mass * speed * speed / (2 * ELEMENTARY_CHARGE)
     sheath = np.sqrt(VACUUM_PERMITTIVITY * voltage / (ELEMENTARY_CHARGE * density))
-    v_t = voltage / np.log(sheath / wire_radius)
+    log = np.log(sheath / wire_radius)
+    v_t = voltage / log if log > 1.0 else np.nan
     width = np.sqrt(VACUUM_PERMITTIVITY * v_t / (ELEMENTARY_CHARGE * density))
     return 3.864 * ram_pressure * width * np.exp(-ram_energy / v_t)
 

@@ -15,6 +15,7 @@ from pathlib import Path
 
 import click
 
+from sailviz.cli_recordings import COMMANDS
 from sailviz.errors import PropagationError, RecordingError, SceneError
 from sailviz.scene import load_scene, schema
 from sailviz.shipped import shipped_scenes
@@ -26,6 +27,10 @@ EXPECTATION_FAILED, BAD_INPUT, RUN_FAILED, INTERRUPTED = 1, 2, 3, 130
 @click.version_option(package_name="sailviz")
 def main():
     """Trajectories of solar sails, electric sails and plasma brakes: computed, recorded, replayed."""
+
+
+for _command in COMMANDS:
+    main.add_command(_command)
 
 
 def _values(settings) -> dict:

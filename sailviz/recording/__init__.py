@@ -19,6 +19,10 @@ _HOMES = {
     "read": "reader",
     "Recording": "reader",
     "digest": "fingerprint",
+    "compare": "comparison",
+    "Comparison": "comparison",
+    "export": "exporter",
+    "info": "summary",
     "picture": "shot",
     "PictureReport": "shot",
 }

@@ -1,0 +1,266 @@
+"""What can be compared: a recording, a run, or a table that `sailviz export --to npz` wrote, all in one form."""
+
+from __future__ import annotations
+
+import json
+import os
+import zipfile
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+
+from sailviz.errors import RecordingError
+from sailviz.recording.reader import (
+    TIMELINES,
+    Entity,
+    EventRow,
+    Recording,
+    group_by_columns,
+    is_component,
+    latest_static,
+    read,
+    short,
+    to_numpy,
+)
+from sailviz.run import Run
+
+TRUTH = ("/state", "/attitude", "/thrust", "/elements", "/environment")
+APART = (*TRUTH, "/events", "/scene", "/about")  # not part of the picture
+FACTS = ("title", "family", "body", "body_mu_m3_s2", "craft_kind", "rows", "complete", "ended", "identity", "versions")
+FACTS += ("accuracy", "text")
+
+
+@dataclass(frozen=True)
+class Table:
+    """Columns of one entity on the same rows. step (n,) int64; time (n,) s; columns name -> (n, ...)."""
+
+    step: np.ndarray
+    time: np.ndarray
+    columns: dict[str, np.ndarray]
+
+    def __len__(self) -> int:
+        return len(self.step)
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """One side of a comparison. `views` and `picture` are None where there is nothing that could be looked at."""
+
+    label: str
+    entities: tuple[str, ...]
+    table: Callable[[str], Table]  # of an entity, read anew each time: a recording may be larger than memory
+    events: tuple[EventRow, ...] = ()
+    facts: dict = field(default_factory=dict)
+    epoch: np.datetime64 | None = None
+    thinned: bool = False  # holds only some of the rows of its run
+    views: Counter | None = None  # (kind, name, origin) -> how many
+    picture: Callable[[], Iterator[tuple[str, dict]]] | None = None  # (entity, name -> arrow column), one at a time
+
+
+def evidence(source, label: str = "") -> Evidence:
+    """Recording, Run, or path of an .rrd or .npz file -> Evidence. RecordingError for anything that is none of them."""
+    if isinstance(source, Evidence):
+        return source
+    if isinstance(source, Run):
+        return of_run(source, label or f"run {source.setting.title!r}")
+    if isinstance(source, Recording):
+        return of_recording(source, label or str(source.path))
+    if not isinstance(source, str | os.PathLike):
+        raise RecordingError(f"cannot compare {source!r}: give a recording, a Run, or the path of an .rrd or .npz file")
+    if Path(source).suffix == ".npz":
+        return of_npz(Path(source), label or str(source))
+    return of_recording(read(source), label or str(source))
+
+
+def of_run(run: Run, label: str) -> Evidence:
+    from sailviz.recording.truth import tables
+
+    columns = {entity: table for entity, table in tables(run).items() if table}
+    steps = run.first + np.arange(len(run))
+    events = sorted(run.events, key=lambda event: event.time)
+    rows = np.minimum(np.searchsorted(run.time, [event.time for event in events], side="left"), len(run) - 1)
+    setting = run.setting
+    facts = {
+        "title": setting.title,
+        "family": setting.family,
+        "body": setting.body.name,
+        "body_mu_m3_s2": setting.body.mu,
+        "craft_kind": setting.craft.kind,
+        "rows": len(run),
+        "complete": True,
+        "ended": run.ended,
+        "identity": setting.identity,
+        "versions": json.dumps(setting.versions, sort_keys=True),
+        "accuracy": setting.accuracy,
+        "text": setting.text,
+    }
+    return Evidence(
+        label,
+        tuple(columns),
+        lambda entity: Table(steps, run.time, columns[entity]),
+        tuple(
+            EventRow(event.name, float(event.time), np.broadcast_to(event.state, 7), int(steps[row]))
+            for event, row in zip(events, rows, strict=True)
+        ),
+        facts,
+        None if setting.epoch is None else setting.epoch.astype("datetime64[ns]"),
+    )
+
+
+def of_recording(recording: Recording, label: str) -> Evidence:
+    known = [entity for entity in TRUTH if entity in recording]
+    sailviz = bool(recording.contract)
+    entities = known if sailviz else [name for name in recording.entities if numeric(recording, name)]
+    facts = {}
+    if "/scene" in recording:
+        scene = recording["/scene"]
+        facts = {name: plain(scene[name][0]) for name in FACTS if name in scene}
+        facts["complete"] = recording.complete
+    elif not recording.complete:
+        facts = {"complete": False} if recording._whole else {}
+    return Evidence(
+        label,
+        tuple(entities),
+        lambda entity: table_of(recording, entity),
+        tuple(recording.events),
+        facts,
+        epoch_of(recording),
+        views=views_of(recording),
+        picture=(lambda: picture_of(recording)) if sailviz else None,
+    )
+
+
+def of_npz(path: Path, label: str) -> Evidence:
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            values = {name: stored[name] for name in stored.files}
+    except OSError as error:
+        raise RecordingError(f"cannot read {path}: {(error.strerror or str(error)).lower()}") from None
+    except (ValueError, zipfile.BadZipFile, EOFError, KeyError):
+        raise RecordingError(f"{path} is not a table of numpy arrays, or was cut off") from None
+    if "state.time_s" not in values or "state.step" not in values:
+        raise RecordingError(f"{path} was not written by `sailviz export --to npz`: it has no state.time_s")
+    tables: dict[str, dict] = {}
+    for name, column in values.items():
+        entity, _, short_name = name.rpartition(".")
+        tables.setdefault(f"/{entity}", {})[short_name] = column
+    scene = {name: plain(value[()]) for name, value in tables.pop("/scene", {}).items()}
+    rows = tables.pop("/events", None)
+    events = ()
+    if rows is not None:
+        columns = zip(rows["name"], rows["time_s"], rows["state"], rows["step"], strict=True)
+        events = tuple(EventRow(str(name), float(time), state, int(step)) for name, time, state, step in columns)
+    steps, times = values["state.step"], values["state.time_s"]
+
+    def table(entity):
+        columns = dict(tables[entity])
+        return Table(columns.pop("step", steps), columns.get("time_s", times), columns)
+
+    return Evidence(
+        label,
+        tuple(tables),
+        table,
+        events,
+        {name: scene[name] for name in FACTS if name in scene},
+        np.datetime64(scene["epoch"], "ns") if scene.get("epoch") else None,
+        thinned=bool(scene.get("thinned", False)),
+    )
+
+
+def plain(value):
+    """A numpy scalar as Python's own."""
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def numeric(recording: Recording, name: str) -> bool:
+    """Whether an entity has a column of float64 over time."""
+    entity = Entity(name, recording._chunks(name))
+    kinds = [table.schema.field(column).type for table in entity._tables for column in table.column_names]
+    return any(is_component(kind) and innermost(kind) == pa.float64() for kind in kinds)
+
+
+def innermost(kind: pa.DataType) -> pa.DataType:
+    while is_component(kind) or pa.types.is_fixed_size_list(kind):
+        kind = kind.value_type
+    return kind
+
+
+def table_of(recording: Recording, name: str) -> Table:
+    """The columns of an entity over time. Columns that were logged at other times than the first are left out."""
+    entity = Entity(name, recording._chunks(name))
+    if not entity._tables:
+        raise RecordingError(f"{recording.path}: {name} does not change over time")
+    table = entity._tables[0]
+    columns = {short(column): to_numpy(table[column]) for column in table.column_names if ":" in column}
+    lines = [column for column in table.column_names if not is_component(table[column].type)]
+    steps = table["step"].to_numpy() if "step" in lines else np.arange(len(table))
+    if "time_s" in columns:
+        return Table(steps, columns["time_s"], columns)
+    if name in TRUTH and "/state" in recording:  # the float64 times, where the rows are those of /state
+        state = Entity("/state", recording._chunks("/state"))
+        if np.array_equal(state.timeline("step"), steps):
+            return Table(steps, state["time_s"], columns)
+    line = next((line for line in ("sim_time", *lines) if line in lines), None)
+    if line is None:
+        raise RecordingError(f"{recording.path}: {name} stands on no timeline")
+    time = table[line].cast(pa.int64()).to_numpy()
+    return Table(steps, time * 1e-9 if pa.types.is_temporal(table[line].type) else time.astype(float), columns)
+
+
+def epoch_of(recording: Recording) -> np.datetime64 | None:
+    """UTC label of t = 0, ns."""
+    if "/state" not in recording:
+        return None
+    state = recording["/state"]
+    try:
+        utc, elapsed = state.timeline("utc"), state.timeline("sim_time")
+    except KeyError:
+        return None
+    return utc[0] - elapsed[0] if len(utc) else None
+
+
+def views_of(recording: Recording) -> Counter | None:
+    """(kind, name, origin) of every view of the layout that travels with a recording; None without a layout."""
+    found: dict[str, tuple[int, dict]] = {}
+    layouts = recording._reader.blueprints()
+    for number, layout in enumerate(layouts):
+        for chunk in recording._reader.stream(store=layout).filter(content="/view/**"):
+            if chunk.entity_path.count("/") != 2:  # the properties of a view lie below it
+                continue
+            batch = chunk.to_record_batch()
+            for row in range(len(batch)):
+                view = found.setdefault(chunk.entity_path, (number, {}))[1]
+                for name in batch.schema.names:
+                    if name.startswith("ViewBlueprint:") and batch.column(name)[row].is_valid:
+                        view[short(name)] = batch.column(name)[row].as_py()[0]
+    if not layouts:
+        return None
+    newest = max((number for number, _ in found.values()), default=0)
+    return Counter(
+        (view.get("class_identifier", ""), view.get("display_name", ""), view.get("space_origin", ""))
+        for number, view in found.values()
+        if number == newest and view.get("class_identifier")
+    )
+
+
+def picture_of(recording: Recording) -> Iterator[tuple[str, dict[str, tuple[np.ndarray, pa.Array]]]]:
+    """(entity, name -> (steps, Arrow column)) of everything that is there to be looked at. Static columns have the
+    step -1; those of several rows stand in order of step.
+    """
+    for name in recording.entities:
+        if name in APART:
+            continue
+        batches = [chunk.to_record_batch() for chunk in recording._chunks(name)]
+        temporal = [batch for batch in batches if any(line in batch.schema.names for line in TIMELINES)]
+        static = [batch for batch in batches if not any(line in batch.schema.names for line in TIMELINES)]
+        columns = {short(key): (np.array([-1]), value) for key, value in latest_static(static).items()}
+        for table in group_by_columns(temporal):
+            steps = table["step"].to_numpy() if "step" in table.column_names else np.arange(len(table))
+            for key in table.column_names:
+                if is_component(table[key].type):
+                    columns[short(key)] = (steps, table[key].combine_chunks())
+        yield name, columns

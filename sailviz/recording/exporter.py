@@ -1,0 +1,246 @@
+"""Recordings as tables for other programs: CSV, Parquet, numpy archives, and orbit ephemeris messages.
+
+csv, parquet   one table: step, time_s, utc where there is an epoch, then entity.column_unit[.component]; events in a
+               second file beside it, NAME.events.csv
+npz            every column under its own key, e.g. state.position_m (n, 3), events.time_s, scene.identity
+oem            position and velocity, CCSDS 502.0-B, in EME2000
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+
+from sailviz.errors import RecordingError
+from sailviz.recording.evidence import Evidence, Table, evidence
+
+FORMATS = ("csv", "parquet", "npz", "oem")
+STATE = ("position_m", "velocity_m_s")
+LETTERS = {"quaternion": "xyzw", "acceleration_rtn_m_s2": "rtn"}
+
+
+def export(source, out=None, to: str = "", *, entities=(), frame: str = "") -> tuple[Path, ...]:
+    """Write a recording (or a Run, or a path of either kind that `compare` takes) for another program -> files written.
+
+    out : file or folder; without one a file named after the recording in the current folder. to : one of FORMATS, by
+    default the ending of `out`. entities : those wanted, all of the truth by default. frame : of an OEM, see `to_oem`.
+    Raises RecordingError, in one sentence, for what cannot be read, written or said in that format.
+    """
+    data = evidence(source)
+    path, to = _target(data, out, to)
+    wanted = tuple("/" + name.strip("/") for name in entities)
+    try:
+        if to == "oem":
+            if wanted and wanted != ("/state",):
+                raise RecordingError("an OEM holds position and velocity; it takes no other entity than /state")
+            return (to_oem(data, path, frame),)
+        if frame:
+            raise RecordingError(f"a frame is named in an OEM; {to} holds the numbers in the frame of the run")
+        if to == "npz":
+            return (_atomic(path, lambda part: _write_npz(part, arrays(data, wanted))),)
+        return _write_tables(data, path, to, wanted)
+    except OSError as error:
+        raise RecordingError(f"cannot write {path}: {(error.strerror or str(error)).lower()}") from None
+
+
+def _target(data: Evidence, out, to: str) -> tuple[Path, str]:
+    out = None if out is None else Path(out)
+    if not to:
+        to = out.suffix.removeprefix(".").lower() if out is not None else ""
+        if to not in FORMATS:
+            raise RecordingError(f"a recording is exported to one of {', '.join(FORMATS)}; say which")
+    if to not in FORMATS:
+        raise RecordingError(f"cannot export to {to}; there are {', '.join(FORMATS)}")
+    name = f"{Path(data.label).stem or 'run'}.{to}"
+    if out is None:
+        return Path(name), to
+    return (out / name if out.is_dir() else out), to
+
+
+def _atomic(path: Path, write) -> Path:
+    """Write under a temporary name first, so that a file appears whole."""
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        write(part)
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+    return path
+
+
+# ---------------------------------------------------------------- one table
+def _write_tables(data: Evidence, path: Path, to: str, wanted) -> tuple[Path, ...]:
+    entities = [name for name in wanted or data.entities if name != "/events"]
+    events = events_table(data) if data.events and (not wanted or "/events" in wanted) else None
+    if "/events" in wanted and events is None:
+        raise RecordingError(f"{data.label} holds no events")
+    meta = {b"sailviz": json.dumps(data.facts, sort_keys=True).encode()}
+    if not entities:
+        return (_atomic(path, lambda part: _write_arrow(part, events.replace_schema_metadata(meta), to)),)
+    table = flat_table(data, entities).replace_schema_metadata(meta)
+    written = [_atomic(path, lambda part: _write_arrow(part, table, to))]
+    if events is not None:
+        beside = path.with_name(f"{path.stem}.events{path.suffix}")
+        written.append(_atomic(beside, lambda part: _write_arrow(part, events, to)))
+    return tuple(written)
+
+
+def _write_arrow(path: Path, table: pa.Table, to: str) -> None:
+    if to == "parquet":
+        import pyarrow.parquet
+
+        # numbers that hardly repeat: dictionaries only cost time
+        pyarrow.parquet.write_table(table, path, compression="zstd", use_dictionary=False)
+    else:
+        import pyarrow.csv
+
+        pyarrow.csv.write_csv(table, path)
+
+
+def flat_table(data: Evidence, entities) -> pa.Table:
+    """Entities side by side, one column per number. RecordingError where they do not stand on the same rows."""
+    columns, first = {}, None
+    for entity in entities:
+        table = data.table(entity)
+        if first is None:
+            first = table, entity
+            columns["step"] = pa.array(table.step)
+            columns["time_s"] = pa.array(np.asarray(table.time, float))
+            if data.epoch is not None:
+                ns = np.round(table.time * 1e9).astype(np.int64).astype("timedelta64[ns]")
+                columns["utc"] = pa.array(data.epoch + ns)
+        elif not np.array_equal(first[0].step, table.step):
+            raise RecordingError(f"{entity} stands on other rows than {first[1]}: export it alone, or all to npz")
+        for name, values in table.columns.items():
+            if name != "time_s":
+                columns.update(_components(f"{entity.strip('/')}.{name}", name, values, data.label))
+    return pa.table(columns)
+
+
+def _components(key: str, name: str, values: np.ndarray, label: str) -> dict[str, pa.Array]:
+    """A column of vectors as columns of numbers: state.position_m.x, ..."""
+    if values.dtype == object and not all(isinstance(value, str) for value in values.ravel()):
+        raise RecordingError(f"{label}: {key} has another number of values in each row; that makes no table")
+    if values.ndim == 1:
+        return {key: pa.array(values)}
+    letters = LETTERS.get(name, "xyz")
+    flat = values.reshape(len(values), -1)
+    named = values.ndim == 2 and flat.shape[1] <= len(letters)
+    return {f"{key}.{letters[i] if named else i}": pa.array(flat[:, i]) for i in range(flat.shape[1])}
+
+
+def events_table(data: Evidence) -> pa.Table:
+    """name, time_s, utc, position_m.x ... velocity_m_s.z, mass_kg: one row per event."""
+    states = np.array([event.state for event in data.events], float).reshape(-1, 7)
+    columns = {
+        "name": pa.array([event.name for event in data.events]),
+        "step": pa.array([event.step for event in data.events]),
+        "time_s": pa.array([event.time for event in data.events]),
+    }
+    if data.epoch is not None:
+        ns = np.round(np.array([event.time for event in data.events]) * 1e9).astype(np.int64)
+        columns["utc"] = pa.array(data.epoch + ns.astype("timedelta64[ns]"))
+    columns |= _components("position_m", "position_m", states[:, :3], data.label)
+    columns |= _components("velocity_m_s", "velocity_m_s", states[:, 3:6], data.label)
+    columns["mass_kg"] = pa.array(states[:, 6])
+    return pa.table(columns)
+
+
+# ---------------------------------------------------------------- numpy archive
+def arrays(data: Evidence, wanted=(), rows=None) -> dict[str, np.ndarray]:
+    """Everything as arrays by key: state.position_m, events.name, scene.identity ... rows : indices into the rows of
+    the truth, for a part of them; the archive then says that it is thinned.
+    """
+    found: dict[str, np.ndarray] = {}
+    steps = data.table("/state").step if "/state" in data.entities else None
+    for entity in [name for name in wanted or data.entities if name != "/events"]:
+        table, key = data.table(entity), entity.strip("/")
+        same = steps is not None and np.array_equal(table.step, steps)
+        pick = rows if rows is not None and same else slice(None)
+        if entity == "/state" or not same or wanted:
+            found[f"{key}.step"] = np.asarray(table.step)[pick]
+            found[f"{key}.time_s"] = np.asarray(table.time, float)[pick]
+        for name, values in table.columns.items():
+            if values.dtype == object:
+                _components(f"{key}.{name}", name, values, data.label)  # refuses rows of different lengths
+                values = values.astype(str)
+            found[f"{key}.{name}"] = values[pick]
+    if data.events and (not wanted or "/events" in wanted):
+        found["events.name"] = np.array([event.name for event in data.events])
+        found["events.time_s"] = np.array([event.time for event in data.events])
+        found["events.state"] = np.array([event.state for event in data.events], float).reshape(-1, 7)
+        found["events.step"] = np.array([event.step for event in data.events])
+    for name, value in data.facts.items():
+        found[f"scene.{name}"] = np.asarray(value)
+    found["scene.epoch"] = np.asarray("" if data.epoch is None else str(data.epoch))
+    found["scene.thinned"] = np.asarray(rows is not None or data.thinned)
+    return found
+
+
+def _write_npz(path: Path, values: dict[str, np.ndarray], compressed: bool = False) -> None:
+    with open(path, "wb") as file:
+        (np.savez_compressed if compressed else np.savez)(file, **values)
+
+
+# ---------------------------------------------------------------- OEM
+def to_oem(source, path, frame: str = "") -> Path:
+    """Write position and velocity as an orbit ephemeris message.
+
+    Runs round the Sun are computed in the ecliptic of J2000: they are rotated into EME2000, or left as they are with
+    frame = "ECLIPJ2000", a name that not every reader knows. Runs round the Earth are computed in its equator without
+    precession and are named EME2000. Another body's frame is not known: it must be named, and nothing is rotated.
+    RecordingError without an epoch: an ephemeris message dates every row.
+    """
+    from sailviz.oem import ECLIPTIC, EQUATOR, EQUATOR_FROM_ECLIPTIC, Ephemeris, write_oem
+
+    data = evidence(source)
+    if "/state" not in data.entities:
+        raise RecordingError(f"{data.label} has no /state, so no position and velocity to write")
+    if data.epoch is None:
+        raise RecordingError(f"{data.label} has no epoch, and an OEM dates every row: give the scene an epoch")
+    state, body = data.table("/state"), str(data.facts.get("body", ""))
+    position, velocity = (state.columns[name] for name in STATE)
+    known = {"Sun": (EQUATOR, ECLIPTIC), "Earth": (EQUATOR,)}
+    if body not in known and not frame:
+        raise RecordingError(
+            f"which frame a run round {body or 'an unnamed body'} is in is not known: name it with frame"
+        )
+    if body in known and frame and frame not in known[body]:
+        raise RecordingError(f"a run round the {body} is written in {' or '.join(known[body])}, not in {frame}")
+    frame = frame or EQUATOR
+    comments = [str(data.facts.get("title", "")), f"made by sailviz from the scene {data.facts.get('identity', '')}"]
+    if body == "Sun" and frame == EQUATOR:
+        position, velocity = position @ EQUATOR_FROM_ECLIPTIC.T, velocity @ EQUATOR_FROM_ECLIPTIC.T
+        comments.append("computed in the ecliptic of J2000; rotated by the obliquity 84381.448 arcsec about x")
+    elif body == "Sun":
+        comments.append("ECLIPJ2000: x to the equinox of J2000, z to the pole of the ecliptic of J2000")
+    elif body == "Earth":
+        comments.append("computed in an equator that does not precess (0.014 deg a year); taken for that of J2000")
+    comments.append("UTC without leap seconds between the rows")
+    ephemeris = Ephemeris(
+        _word(data.facts.get("title", "")) or "TRAJECTORY",
+        str(data.facts.get("identity", "")) or "UNKNOWN",
+        body.upper(),
+        frame,
+        "UTC",
+        data.epoch,
+        _checked_times(state, data.label),
+        position,
+        velocity,
+    )
+    return write_oem(path, ephemeris, comments)
+
+
+def _word(text: str) -> str:
+    """What an OEM can print, in capitals."""
+    return " ".join("".join(c for c in text if c.isascii() and c.isprintable()).split()).upper()[:60]
+
+
+def _checked_times(state: Table, label: str) -> np.ndarray:
+    if np.any(np.diff(state.time) <= 0):
+        raise RecordingError(f"{label}: its times do not increase, and an OEM needs that")
+    return state.time

@@ -1,0 +1,127 @@
+"""What a recording is, for a person or a script, without reading more of it than that takes."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pyarrow as pa
+
+from sailviz.describe import duration
+from sailviz.recording.evidence import TRUTH, epoch_of, innermost, views_of
+from sailviz.recording.reader import Entity, Recording, is_component, read, short
+
+
+def info(source) -> dict:
+    """Everything about a recording that is not its numbers, ready for JSON. source : path or Recording.
+
+    Keys: path, bytes, application, contract, title, family, body, craft, rows, span_s, epoch, complete, ended,
+    identity, versions, accuracy, events, expectations, views, truth (entity -> column -> kind), picture (entities).
+    """
+    recording = source if isinstance(source, Recording) else read(source)
+    scene = _entity(recording, "/scene")
+
+    def told(name, otherwise=None):
+        return _plain(scene[name][0]) if name in scene else otherwise
+
+    time = _entity(recording, "/state").get("time_s", np.zeros(0))
+    epoch, views = epoch_of(recording), views_of(recording)
+    truth = [name for name in (*TRUTH, "/events") if name in recording]
+    return {
+        "path": str(recording.path),
+        "bytes": recording.path.stat().st_size,
+        "application": recording.application_id,
+        "contract": recording.contract,
+        "title": told("title", ""),
+        "family": told("family", ""),
+        "body": told("body", ""),
+        "craft": told("craft_kind", ""),
+        "rows": len(time),
+        "span_s": [float(time[0]), float(time[-1])] if len(time) else None,
+        "epoch": None if epoch is None else str(epoch.astype("datetime64[ms]")),
+        "complete": recording.complete,
+        "ended": told("ended", ""),
+        "identity": recording.identity,
+        "versions": recording.versions,
+        "accuracy": recording.accuracy,
+        "events": [{"name": event.name, "time_s": event.time} for event in recording.events],
+        "expectations": [dict(item) for item in recording.resolved.get("expect", [])],
+        "views": sorted(name for _, name, _ in (views or {})),
+        "truth": {name: kinds(recording, name) for name in truth},
+        "picture": [name for name in recording.entities if name not in (*truth, "/scene")],
+    }
+
+
+def _entity(recording: Recording, name: str):
+    """An entity, or an empty one where the recording has none of that name."""
+    return recording[name] if name in recording else {}  # noqa: SIM401, a recording has no get
+
+
+def kinds(recording: Recording, name: str) -> dict[str, str]:
+    """Column -> what it holds, e.g. "float64 x 3", from the schema alone."""
+    entity = Entity(name, recording._chunks(name))
+    found = {}
+    for table in entity._tables:
+        for column in table.column_names:
+            kind = table[column].type
+            if not is_component(kind):
+                continue
+            inner = kind.value_type
+            size = f" x {inner.list_size}" if pa.types.is_fixed_size_list(inner) else ""
+            word = {"double": "float64", "float": "float32"}.get(str(innermost(kind)), str(innermost(kind)))
+            found[short(column)] = word + size
+    return found
+
+
+def in_words(facts: dict) -> str:
+    """The same, to be read."""
+    lines = [facts["title"] or facts["path"]]
+
+    def say(name, value):
+        if value:
+            lines.append(f"  {name:<13} {value}")
+
+    size = facts["bytes"]
+    say("file", f"{facts['path']}, {size / 1e6:.3g} MB" if size >= 1e5 else f"{facts['path']}, {size / 1e3:.3g} kB")
+    application = facts["application"]
+    say(
+        "made by",
+        f"{application}, contract {facts['contract']}" if facts["contract"] else f"{application} (no sailviz)",
+    )
+    say("family", f"{facts['family']}: {facts['craft']} round the {facts['body']}" if facts["family"] else "")
+    if facts["span_s"]:
+        start, end = facts["span_s"]
+        say(
+            "rows",
+            f"{facts['rows']:,} over {duration(end - start)}" + (f", from {duration(start)} on" if start else ""),
+        )
+    say("epoch", f"{facts['epoch']} UTC" if facts["epoch"] else "")
+    if facts["contract"] or not facts["complete"]:
+        why = f"yes, ended by {facts['ended']}" if facts["ended"] else "yes"
+        say("complete", why if facts["complete"] else "no: the run was interrupted, or the file was cut off")
+    say("identity", facts["identity"])
+    say("versions", ", ".join(f"{name} {number}" for name, number in facts["versions"].items()))
+    say("accuracy", facts["accuracy"])
+    for event in facts["events"]:
+        say("event", f"{event['name']} at {duration(event['time_s'])}")
+    for item in facts["expectations"]:
+        say("expects", _expectation(item))
+    say("views", ", ".join(facts["views"]))
+    for entity, columns in facts["truth"].items():
+        say(entity, ", ".join(f"{name} ({kind})" for name, kind in columns.items()))
+    say("picture", f"{len(facts['picture'])} entities")
+    return "\n".join(lines)
+
+
+def _expectation(item: dict) -> str:
+    at = item.get("at") or f"t = {duration(item.get('at_time') or 0.0)}"
+    within = f"{item['within_percent']:g} %" if item.get("within_percent") else f"{item.get('within') or 0:g}"
+    return f"{item['quantity']} at {at}: {item['value']:.10g} within {within}"
+
+
+def _plain(value):
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def as_json(facts: dict) -> str:
+    return json.dumps(facts, indent=2)

@@ -34,6 +34,10 @@ class ForceShape:
             return float(electric_sail.CONE_MAX)
         return _film_limit(self.film)[0]
 
+    def slope_limit(self) -> float:
+        """Tangent of the largest cone angle, exact for the electric sail: 1 / (2 sqrt 2)."""
+        return 1 / (2 * np.sqrt(2)) if self.film is None else float(np.tan(self.cone_limit()))
+
     def pitch(self, cone):
         """The smaller pitch that gives a cone angle >= 0, rad, same shape; NaN beyond the limit."""
         if self.film is None:
@@ -42,12 +46,15 @@ class ForceShape:
 
 
 def force_shape(device) -> ForceShape:
-    """ForceShape of "electric-sail", of a film's name, or of a Film. KeyError for another name."""
+    """ForceShape of "electric-sail", of a film's name, or of a Film. ValueError for anything else."""
     if isinstance(device, Film):
         return ForceShape(device, 2)
     if device == "electric-sail":
         return ForceShape(None, 1)
-    return ForceShape(FILMS[device], 2)
+    if device in FILMS:
+        return ForceShape(FILMS[device], 2)
+    known = ", ".join(["electric-sail", *FILMS])
+    raise ValueError(f"{device!r} is no device for a design; there are {known}, or a Film of your own")
 
 
 def _film_cone(film, pitch):
@@ -57,9 +64,9 @@ def _film_cone(film, pitch):
 
 @lru_cache(maxsize=64)
 def _film_limit(film) -> tuple[float, float]:
-    """(largest cone angle, pitch where it is reached), rad. An ideal film tends to 90 deg edge-on, where its force vanishes.
+    """(largest cone angle, pitch where it is reached), rad. An ideal film tends to 90 deg edge-on, without force.
 
-    cos(alpha) divides out of both components; the maximum of k_t / k_r is found by golden section on a unimodal function.
+    cos(alpha) divides out of both components; the maximum of k_t / k_r is found by golden section: it is unimodal.
     """
 
     def cone(alpha):

@@ -1,4 +1,4 @@
-"""Logarithmic spirals of a solar sail at fixed pitch: r = r0 exp(theta tan(gamma)), gamma the constant flight-path angle.
+"""Logarithmic spirals of a solar sail at fixed pitch: r = r0 exp(theta tan(gamma)), gamma the flight-path angle.
 
 Source: paper J.9's subject; equations re-derived from the equations of motion and checked against integration.
 """
@@ -14,8 +14,8 @@ from sailviz.propulsion.solar_sail import FILMS, Film
 
 @dataclass(frozen=True)
 class LogarithmicSpiral:
-    """slope tan(gamma), flight_path_angle rad, speed_factor v_theta^2 r / mu, and the constant osculating eccentricity and
-    true_anomaly rad. Outwards for positive slope. feasible, reason as elsewhere; NaN where infeasible."""
+    """slope tan(gamma), flight_path_angle rad, speed_factor v_theta^2 r / mu, and the constant osculating eccentricity
+    and true_anomaly rad. Outwards for positive slope. feasible, reason as elsewhere; NaN where infeasible."""
 
     slope: np.ndarray
     flight_path_angle: np.ndarray
@@ -46,7 +46,8 @@ class LogarithmicSpiral:
 def logarithmic(lightness, pitch, film: Film | str = "ideal") -> LogarithmicSpiral:
     """The spiral that a lightness number and a pitch in rad allow (negative pitch: inwards); scalars or arrays.
 
-    tan(gamma) is the small root of eps_t T^2 - (1 - eps_r) T + 2 eps_t = 0, with a_r = eps_r mu/r^2, a_t = eps_t mu/r^2.
+    tan(gamma) is the small root of eps_t T^2 - (1 - eps_r) T + 2 eps_t = 0, with a_r = eps_r mu/r^2, a_t = eps_t
+    mu/r^2.
     Feasible where eps_r < 1 and |eps_t| / (1 - eps_r) <= 1 / (2 sqrt 2).
     """
     film = FILMS[film] if isinstance(film, str) else film

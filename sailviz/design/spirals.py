@@ -1,6 +1,7 @@
 """Logarithmic spirals of a solar sail at fixed pitch: r = r0 exp(theta tan(gamma)), gamma the flight-path angle.
 
-Source: paper J.9's subject; equations re-derived from the equations of motion and checked against integration.
+Source: paper J.9's subject, not read; equations re-derived from the equations of motion and checked against
+integration. The classical approximations are those of small flight-path angles.
 """
 
 from __future__ import annotations
@@ -8,7 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 
+from sailviz.design.force_shape import force_shape
 from sailviz.propulsion.solar_sail import FILMS, Film
 
 
@@ -25,6 +28,7 @@ class LogarithmicSpiral:
     transverse: np.ndarray  # eps_theta, transverse acceleration over mu / r^2
     feasible: np.ndarray
     reason: str = ""
+    radial: np.ndarray = None  # eps_r, radial acceleration over mu / r^2
 
     def time(self, r0, r1, mu):
         """Flight time in s between two radii in m (r1 on the side the spiral goes), mu in m3/s2."""
@@ -34,6 +38,25 @@ class LogarithmicSpiral:
     def angle(self, r0, r1):
         """Swept angle in rad between two radii in m."""
         return np.log(np.asarray(r1, dtype=float) / r0) / self.slope
+
+    @property
+    def classical_slope(self):
+        """tan(gamma) for small angles: 2 eps_t / (1 - eps_r), short by its half square as a share."""
+        return np.where(self.feasible, 2 * self.transverse / (1 - self.radial), np.nan)[()]
+
+    @property
+    def classical_speed_factor(self):
+        """v_theta^2 r / mu of a circular orbit under the Sun lightened by the sail: 1 - eps_r."""
+        return np.where(self.feasible, 1 - self.radial, np.nan)[()]
+
+    def classical_time(self, r0, r1, mu):
+        """Flight time in s for small angles: (1 / 3) sqrt(1 - eps_r) (r1^1.5 - r0^1.5) / (|eps_t| sqrt(mu))."""
+        q = np.abs(np.asarray(r1, dtype=float) ** 1.5 - np.asarray(r0, dtype=float) ** 1.5)
+        return q * np.sqrt(self.classical_speed_factor / mu) / (3 * np.abs(self.transverse))
+
+    def classical_angle(self, r0, r1):
+        """Swept angle in rad for small angles."""
+        return np.log(np.asarray(r1, dtype=float) / r0) / self.classical_slope
 
     def state(self, radius, azimuth, mu):
         """Position m and velocity m/s, each (3,), in the x-y plane at a radius in m and an azimuth in rad."""
@@ -62,7 +85,7 @@ def logarithmic(lightness, pitch, film: Film | str = "ideal") -> LogarithmicSpir
     e_cos, e_sin = factor - 1, 2 * eps_t
     reason = ""
     if lightness.ndim == 0 and not feasible:
-        largest = 1 / (film.efficiency * float(k_r + 2 * np.sqrt(2) * abs(k_t)))
+        largest = float(largest_lightness(pitch, film))
         reason = (
             "without transverse thrust the orbit is a conic, not a spiral"
             if eps_t == 0
@@ -77,4 +100,72 @@ def logarithmic(lightness, pitch, film: Film | str = "ideal") -> LogarithmicSpir
         eps_t[()],
         feasible[()],
         reason,
+        eps_r[()],
     )
+
+
+def largest_lightness(pitch, film: Film | str = "ideal"):
+    """Largest lightness number that still spirals at a pitch in rad, same shape: 1 / (k_r + 2 sqrt(2) |k_t|), at a
+    flight-path angle of 54.7356 deg. NaN where the film gives no transverse thrust."""
+    film = FILMS[film] if isinstance(film, str) else film
+    k_r, k_t = film.components(pitch)
+    with np.errstate(divide="ignore"):
+        return np.where(k_t == 0, np.nan, 1 / (film.efficiency * (k_r + 2 * np.sqrt(2) * np.abs(k_t))))[()]
+
+
+@dataclass(frozen=True)
+class Insertion:
+    """The sail that takes a craft from an ellipse onto a logarithmic spiral without an impulse; NaN where infeasible.
+
+    pitch rad (negative: inwards), lightness; slope tan(gamma) of the spiral, cone rad. reason for scalar requests.
+    """
+
+    pitch: np.ndarray
+    lightness: np.ndarray
+    slope: np.ndarray
+    cone: np.ndarray
+    feasible: np.ndarray
+    reason: str = ""
+
+
+def insertion(eccentricity, true_anomaly, film: Film | str = "ideal") -> Insertion:
+    """Pitch and lightness number that continue an ellipse as a spiral with the same position and velocity; broadcast.
+
+    eccentricity in (0, 1), true_anomaly : rad, where the sail opens. eps_t = e sin(nu) / 2 and
+    eps_r = -e cos(nu) - e^2 sin^2(nu) / (2 (1 + e cos(nu))), positive near aphelion, never on a circle.
+    tan(gamma) = e sin(nu) / (1 + e cos(nu)); over sqrt(2) it is the steep one of the two spirals of this sail.
+    Feasible where the cone angle atan2(eps_t, eps_r) is within the film's reach. Re-derived.
+    """
+    film = FILMS[film] if isinstance(film, str) else film
+    shape = force_shape(film)
+    e, nu = np.broadcast_arrays(np.asarray(eccentricity, dtype=float), np.asarray(true_anomaly, dtype=float))
+
+    def needs(e, nu):
+        c, s = np.cos(nu), np.sin(nu)
+        return -e * c - (e * s) ** 2 / (2 * (1 + e * c)), e * s / 2
+
+    eps_r, eps_t = needs(e, nu)
+    cone = np.arctan2(eps_t, eps_r)
+    limit = shape.cone_limit()
+    # the rounding of true anomalies like pi leaves no transverse thrust worth the name
+    feasible = (e > 0) & (e < 1) & (eps_r > 0) & (np.abs(cone) <= limit * (1 + 1e-12)) & (np.abs(eps_t) > 1e-15 * e)
+    pitch = shape.pitch(np.where(feasible, np.minimum(np.abs(cone), limit), 0.0)) * np.sign(eps_t)
+    k_r, _ = film.components(pitch)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = [
+            np.where(feasible, value, np.nan)[()]
+            for value in (pitch, eps_r / (film.efficiency * k_r), e * np.sin(nu) / (1 + e * np.cos(nu)), cone)
+        ]
+    reason = ""
+    if e.ndim == 0 and not feasible:
+        if not 0 < e < 1:
+            reason = "it takes an ellipse: a circle or a hyperbola does not touch a logarithmic spiral"
+        elif np.abs(eps_t) <= 1e-15 * e:
+            reason = "at an apsis the spiral would be a circle: open the sail before or after aphelion"
+        else:
+            first = brentq(lambda x: np.arctan2(*needs(float(e), x)[::-1]) - min(limit, np.pi / 2), 1e-9, np.pi)
+            reason = (
+                f"the film reaches cone angles up to {np.degrees(limit):.5g} deg; true anomalies of "
+                f"{np.degrees(first):.4f} to {360 - np.degrees(first):.4f} deg are possible, 180 deg excepted"
+            )
+    return Insertion(*found, feasible[()], reason)

@@ -7,8 +7,9 @@ import rerun.blueprint as rrb
 from rerun.blueprint.archetypes import PlotBackground, TextLogColumns
 from rerun.blueprint.encodings import TextLogColumn, TextLogColumnKind, TimelineColumn
 
-from sailviz.recording.layout import Camera, Layout, PlotView
+from sailviz.recording.layout import Camera, Layout
 from sailviz.recording.look import BACKGROUND
+from sailviz.recording.slots import PlotView
 
 ENDLESS = rrb.TimeRangeBoundary.infinite()
 NOW = rrb.TimeRangeBoundary.cursor_relative()

@@ -42,9 +42,7 @@ def apart(arrows, facing=None, slanted=None, open_to=None, elevations=(12, 20, 2
 
 
 def over_planet(orbit_normal, sun=None) -> np.ndarray:
-    """Direction that sees an orbit as an open ellipse across its planet, the line between day and night, and some
-    north.
-    """
+    """Direction that sees an orbit as an open ellipse, the line between day and night, and some north."""
     eyes = directions(np.arange(5, 50, 5), 5.0)
     cost = np.abs(np.abs(eyes @ orbit_normal) - 0.45) + 0.6 * np.abs(eyes[:, 2] - 0.40)
     if sun is not None:

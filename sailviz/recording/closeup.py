@@ -64,9 +64,9 @@ class SailCloseUp:
         pen.label_style("/sail/velocity/name", look.VELOCITY, "velocity")
         pen.label_style("/sail/force_name", look.THRUST)
         pen.strip_style("/sail/pitch/arc", look.PITCH, look.WIDTH["arc"])
-        corners = np.arange(1, ARC)
-        fan = np.stack([0 * corners, corners, corners + 1], 1).astype(np.uint32)
-        pen.static("/sail/pitch/fan", rr.Mesh3D.from_fields(triangle_indices=fan, albedo_factor=[*look.PITCH, 38]))
+        k = np.arange(1, ARC)
+        fan = np.stack([0 * k, k, k + 1], 1).astype(np.uint32)
+        pen.triangles("/sail/pitch/fan", fan, [*look.PITCH, 38])
         pen.label_style("/sail/pitch/name", look.PITCH)
         pen.strip_style("/sail/cone", look.CONE, look.WIDTH["arc"])
         pen.strip_style("/sail/clock/circle", look.CLOCK_CIRCLE, look.WIDTH["helper"])
@@ -112,9 +112,7 @@ class SailCloseUp:
         self._pen.columns("/sail/force_name", samples.index, rr.Points3D.columns(labels=texts))
 
     def _add_angles(self, samples: Samples) -> None:
-        """Pitch as a fan from the radial direction to the normal, cone as an arc to the thrust, clock on the normal's
-        circle.
-        """
+        """Pitch as a fan from the radial line to the normal, cone as an arc to the thrust, clock on a circle."""
         pen, index, count = self._pen, samples.index, len(samples)
         attitude = samples.run.attitude
         out = np.tile([1.0, 0.0, 0.0], (count, 1))

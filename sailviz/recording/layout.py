@@ -8,13 +8,11 @@ import numpy as np
 
 from sailviz.frames import unit
 from sailviz.recording import cameras, look, rows
-from sailviz.recording.plots import Curves, nice_range
+from sailviz.recording.plots import Curves
 from sailviz.recording.samples import Frame, Samples
+from sailviz.recording.slots import Slot, column, plot_views
 from sailviz.run import Run, Setting
 
-ALWAYS = ("distance", "altitude", "inclination", "eccentricity", "angles", "clock", "thrust")
-ALWAYS = tuple(f"/plots/{name}" for name in ALWAYS)
-COLUMN, FURNITURE, NUMBER = 640.0, 48.0, 19.0  # pixels: the plots on a laptop, title and axis of one, a number
 DEPARTING = 0.02  # relative change of distance below which an orbit counts as closed
 
 
@@ -27,24 +25,6 @@ class Camera:
     position: tuple[float, ...]
     target: tuple[float, ...] = (0.0, 0.0, 0.0)
     up: tuple[float, ...] = (0.0, 0.0, 1.0)
-
-
-@dataclass(frozen=True)
-class PlotView:
-    title: str
-    paths: tuple[str, ...]
-    low: float
-    high: float
-    legend: str = ""  # corner, "" for none
-    share: float = 2.4
-
-
-@dataclass(frozen=True)
-class Slot:
-    """A place in the column of plots; several plots share it as tabs."""
-
-    plots: tuple[PlotView, ...]
-    share: float
 
 
 @dataclass(frozen=True)
@@ -252,75 +232,3 @@ def in_words(factor: float) -> str:
                 return f"{int(value * 1000):,}"
             return f"{value:.10g}{word}"
     return f"{float(f'{factor:.2g}'):.10g}"
-
-
-def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple[PlotView, ...], ...]:
-    """Which curves are shown: first those that every run has, then what the environment did.
-
-    steers : whether the craft has angles that mean something
-    """
-    known = {plot.path: plot for plot in curves.plots}
-
-    def view(path: str, **more) -> PlotView:
-        plot = known[path]
-        low, high = curves.reach(path)
-        if high - low < plot.noise:
-            low = high = round(0.5 * (low + high) / plot.noise) * plot.noise
-        legend = "RightTop" if len(plot.names) > 1 else ""
-        if plot.from_zero:
-            low = min(low, 0.0)
-        return PlotView(**{"title": plot.title, "paths": (path,), "low": low, "high": high, "legend": legend} | more)
-
-    shown = []
-    if "/plots/distance" in known:
-        r_low, r_high = curves.ranges["/plots/distance:0"]
-        a_low, a_high = curves.ranges.get("/plots/distance:1", (r_low, r_high))
-        # the semi-major axis of an orbit close to escape is beyond all measure: it may leave the range
-        low, high = max(min(r_low, a_low), 0.5 * r_low), min(max(r_high, a_high), 1.5 * r_high)
-        shown.append(view("/plots/distance", low=low, high=high, share=3.0))
-    else:
-        shown.append(view("/plots/altitude", share=3.0))
-    tilt = curves.reach("/plots/inclination")
-    tilted = tilt[1] > 0.05 and (frame.sun or tilt[1] - tilt[0] > 0.05)
-    shown.append(view("/plots/inclination" if tilted else "/plots/eccentricity"))
-    shown += angle_views(curves, view) if steers else []
-    shown.append(view("/plots/thrust"))
-    environment = tuple(view(path) for path in known if path not in ALWAYS)
-    return tuple(shown), environment
-
-
-def angle_views(curves: Curves, view) -> list[PlotView]:
-    """Pitch, cone and clock in one plot where their sizes allow it; a constant clock angle goes into the title."""
-    pitch, clock = curves.reach("/plots/angles"), curves.reach("/plots/clock")
-    if clock[1] - clock[0] < 0.5:
-        title = f"Pitch and cone angle [deg], clock {abs(round(0.5 * (clock[0] + clock[1]), 1)):.4g}"
-        return [view("/plots/angles", title=title, share=3.0)]
-    low, high = min(pitch[0], clock[0]), max(pitch[1], clock[1])
-    if high - low < 3 * max(pitch[1] - pitch[0], 30):
-        paths = ("/plots/angles", "/plots/clock")
-        title = "Pitch, cone and clock angle [deg]"
-        return [view("/plots/angles", title=title, paths=paths, low=low, high=high, share=3.0)]
-    return [view("/plots/angles"), view("/plots/clock", share=2.0)]
-
-
-def column(shown, environment, lanes) -> tuple[tuple[Slot, ...], float]:
-    """The right column: which plots stand alone and which share a place as tabs, and the share of the lanes.
-
-    More than five rows are not readable on a laptop: then the plot of the orbit's shape goes behind the first.
-    """
-    slots = [Slot((plot,), plot.share) for plot in shown]
-    if environment:
-        slots.append(Slot(environment, 2.6))
-    lane_share = 1.3 + 0.7 * len(lanes) if lanes else 0.0
-    if len(slots) + bool(lanes) > 5:
-        slots[:2] = [Slot(slots[0].plots + slots[1].plots, slots[0].share)]
-    total = sum(slot.share for slot in slots) + lane_share
-    fitted = []
-    for slot in slots:
-        numbers = (COLUMN * slot.share / total - FURNITURE) / NUMBER
-        plots = []
-        for plot in slot.plots:
-            low, high = nice_range(plot.low, plot.high, numbers)
-            plots.append(replace(plot, low=low, high=high))
-        fitted.append(Slot(tuple(plots), slot.share))
-    return tuple(fitted), lane_share

@@ -66,9 +66,7 @@ def about_z(angle: float) -> np.ndarray:
 
 
 def sphere(rows: int = 48, columns: int = 96):
-    """Unit sphere with a seam at longitude 180 degrees -> Mesh, uv ((rows + 1)(columns + 1), 2), v down from the north
-    pole.
-    """
+    """Unit sphere with a seam at longitude 180 degrees -> Mesh, uv (n, 2), v down from the north pole."""
     latitude, longitude = np.meshgrid(
         np.linspace(np.pi / 2, -np.pi / 2, rows + 1), np.linspace(-np.pi, np.pi, columns + 1), indexing="ij"
     )

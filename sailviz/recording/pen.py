@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from sailviz.recording.look import ANCHOR, points
+from sailviz.recording.look import ANCHOR, points, rgba
 from sailviz.recording.meshes import Mesh
 
 
@@ -14,9 +14,7 @@ def f4(values) -> np.ndarray:
 
 
 class Pen:
-    """Writes to a stream. Style is static, data have rows: of one component of one entity the static value would hide
-    the rows.
-    """
+    """Writes to a stream. Style is static, data have rows: a static value would hide the rows of the same component."""
 
     def __init__(self, stream: rr.RecordingStream):
         self._stream = stream
@@ -28,9 +26,7 @@ class Pen:
         self._stream.send_columns(path, index, columns)
 
     def mesh(self, path: str, mesh: Mesh, color, shaded: bool = True, side: str | None = None) -> None:
-        """A mesh of one colour; `side` "front" or "back" draws only that one. Unshaded is flat: for what glows, or is
-        air.
-        """
+        """A mesh of one colour, `side` "front" or "back" alone if given. Unshaded is flat: for what glows, or is air."""
         more = {"vertex_normals": f4(mesh.normals)} if shaded else {}
         if side:
             more["face_rendering"] = side
@@ -42,6 +38,14 @@ class Pen:
 
     def lines(self, path: str, strips, color, width: float) -> None:
         self.static(path, rr.LineStrips3D([f4(strip) for strip in strips], colors=[list(color)], radii=points(width)))
+
+    def triangles(self, path: str, faces, color) -> None:
+        """Faces (m, 3) and colour of a mesh whose corners have rows.
+
+        As a column, because what is logged waits a moment and a live viewer complains about corners without triangles.
+        """
+        indices = rr.Mesh3D.columns(triangle_indices=faces).partition([len(faces)])
+        self.columns(path, [], [*indices, *rr.Mesh3D.columns(albedo_factor=[rgba(color, color[3])])])
 
     def scale(self, path: str, factor) -> None:
         """How large everything below `path` is drawn. factor : float or (3,)."""

@@ -240,8 +240,7 @@ class Curves:
 
 
 def nice_range(low: float, high: float, numbers: float = 4.0) -> tuple[float, float]:
-    """A range with a margin whose ends are round, such that the viewer writes at least two numbers on the axis if it
-    can.
+    """A range between round numbers and a margin, such that the viewer finds room for two numbers on the axis.
 
     It writes multiples of a power of ten where there is room for them: `numbers` is how many fit. A constant stands in
     the middle of a fifth of its size.

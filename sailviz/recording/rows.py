@@ -19,9 +19,7 @@ LONGEST = 2**63 / 1e9  # s that a timeline of 64-bit nanoseconds can count: 292 
 
 
 def take(run: Run, index) -> Run:
-    """The rows `index` of a run: a slice or an array of ints into this block. `first` and `events` stay those of the
-    block.
-    """
+    """The rows `index` (a slice or ints into this block) of a run. `first` and `events` stay those of the block."""
 
     def pick(part):
         if isinstance(part, np.ndarray):

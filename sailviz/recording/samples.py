@@ -143,9 +143,7 @@ def slowed(run: Run, number, frame: Frame):
 
 
 def orbits(run: Run, frame: Frame, count: int = 121) -> np.ndarray:
-    """Osculating orbits as closed lines, (n, count, 3) in view units; of an open one the part within three times the
-    distance.
-    """
+    """Osculating orbits as closed lines, (n, count, 3) view units; of open ones the part within 3 distances."""
     e = run.elements
     reach = np.linalg.norm(run.position, axis=1) * 3.0
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -20,6 +20,7 @@ import numpy as np
 
 from sailviz.errors import RecordingError
 from sailviz.recording.reader import read
+from sailviz.recording.sinks import viewer_binary
 
 PACKAGES = "libvulkan1 mesa-vulkan-drivers"
 START, SETTLE = 60.0, 25.0  # s to wait for the viewer, and for a picture that no longer changes
@@ -193,15 +194,12 @@ class Studio:
 
 def start_viewer(path: Path, size, scratch: str):
     """Start Rerun's own binary headless -> process, port."""
-    import rerun_cli
-
-    binary = Path(rerun_cli.__file__).parent / "rerun"
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
     environment = dict(os.environ, RUST_LOG="error", RERUN_ANALYTICS="0")
     environment.setdefault("XDG_RUNTIME_DIR", scratch)
-    command = [str(binary), "--headless", "--bind", "127.0.0.1", "--port", str(port)]
+    command = [viewer_binary(), "--headless", "--bind", "127.0.0.1", "--port", str(port)]
     command += ["--window-size", f"{size[0]}x{size[1]}", "--hide-welcome-screen", "--memory-limit", "4GiB", str(path)]
     process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return process, port

@@ -6,9 +6,11 @@ Files and viewers can be had at once. Standard output and memory stand alone.
 from __future__ import annotations
 
 import os
+import socket
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
+from urllib.parse import quote, urlsplit
 
 import rerun as rr
 
@@ -60,9 +62,7 @@ class File:
 
     @staticmethod
     def reserve(path) -> File:
-        """Claim a path: the growing file is made at once, so that what cannot be written fails before anything is
-        computed.
-        """
+        """Claim a path: the growing file is made at once, so that what cannot be written fails at once."""
         path = Path(path)
         if path.is_dir():
             raise RecordingError(f"cannot write the recording {path}: it is a directory")
@@ -86,9 +86,7 @@ class File:
 
 
 def resolve(sinks) -> list:
-    """Sinks as given by a user -> File, Viewer, Web, Connect, Memory or STDOUT. Raises RecordingError for anything
-    else.
-    """
+    """Sinks as a user gives them -> File, Viewer, Web, Connect, Memory or STDOUT. RecordingError for anything else."""
     if not sinks:
         raise RecordingError("a recording needs somewhere to go: a path, VIEWER, WEB, Connect(url), Memory() or '-'")
     wanted = [sink if isinstance(sink, Viewer | Web | Connect | Memory) or sink == STDOUT else None for sink in sinks]
@@ -104,6 +102,9 @@ def resolve(sinks) -> list:
     paths = [Path(given).resolve() for sink, given in zip(wanted, sinks, strict=True) if sink is None]
     if len(set(paths)) < len(paths):
         raise RecordingError(f"the same file is given twice: {max(paths, key=paths.count)}")
+    for sink in wanted:
+        if isinstance(sink, Connect):
+            check_answer(sink.url)
     resolved = []
     try:
         for sink, given in zip(wanted, sinks, strict=True):
@@ -112,6 +113,17 @@ def resolve(sinks) -> list:
         discard(resolved)
         raise
     return resolved
+
+
+def check_answer(url: str) -> None:
+    """Raise RecordingError unless something listens at a viewer's address: the stream itself would wait for ever."""
+    parts = urlsplit(url)
+    if not parts.scheme.startswith("rerun") or not parts.hostname:
+        raise RecordingError(f"{url} is no address of a viewer, which looks like rerun+http://127.0.0.1:9876/proxy")
+    try:
+        socket.create_connection((parts.hostname, parts.port or 9876), timeout=3).close()
+    except OSError as error:
+        raise RecordingError(f"no viewer answers at {url}: {error.strerror or error}") from None
 
 
 def discard(sinks) -> None:
@@ -132,6 +144,14 @@ def attach(stream: rr.RecordingStream, sinks: list):
         return None
     if isinstance(sinks[0], Memory):
         return stream.memory_recording()
+    try:
+        return open_sinks(stream, sinks)
+    except (ValueError, RuntimeError) as error:
+        raise RecordingError(f"cannot open the recording's sink: {str(error).splitlines()[0]}") from None
+
+
+def open_sinks(stream: rr.RecordingStream, sinks: list):
+    """Files, viewers and a browser's server, all at once -> the server, None without one."""
     targets, server = [], None
     for sink in sinks:
         if isinstance(sink, File):
@@ -139,23 +159,25 @@ def attach(stream: rr.RecordingStream, sinks: list):
         elif isinstance(sink, Connect):
             targets.append(rr.GrpcSink(sink.url))
         elif isinstance(sink, Viewer):
-            rr.spawn(port=sink.port, connect=False, hide_welcome_screen=True)
+            rr.spawn(port=sink.port, connect=False, hide_welcome_screen=True, executable_path=viewer_binary())
             targets.append(rr.GrpcSink(f"rerun+http://127.0.0.1:{sink.port}/proxy"))
         else:
             server = rr.GrpcServerSink("127.0.0.1", sink.data_port)
             targets.append(server)
-    try:
-        stream.set_sinks(*targets)
-    except (ValueError, RuntimeError) as error:
-        raise RecordingError(f"cannot open the recording's sink: {str(error).splitlines()[0]}") from None
+    stream.set_sinks(*targets)
     for sink in sinks:
         if isinstance(sink, Web):
             rr.serve_web_viewer(web_port=sink.port, open_browser=sink.open_browser, connect_to=server.uri)
     return server
 
 
+def viewer_binary() -> str:
+    """Rerun's own viewer, which need not be on the PATH: it lies beside the package."""
+    import rerun_cli
+
+    return str(Path(rerun_cli.__file__).parent / ("rerun.exe" if os.name == "nt" else "rerun"))
+
+
 def web_address(sink: Web, server) -> str:
     """What to type into a browser to see the recording."""
-    from urllib.parse import quote
-
     return f"http://127.0.0.1:{sink.port}/?url={quote(server.uri, safe='')}"

@@ -145,9 +145,7 @@ class World:
                 self._pen.strips(f"/world/trail/{part}", index, strips, colors)
 
     def _ramp(self, samples: Samples, factor: float = 1.0) -> np.ndarray:
-        """Colours by altitude from HIGH at the start to LOW on the ground; the root because a descent ends fast. (n,)
-        int.
-        """
+        """Colours (n,) by altitude, HIGH at the start to LOW on the ground; the root because a descent ends fast."""
         start = max(self._frame.origin_radius - 1, 1e-9)
         altitude = samples.run.elements.semi_major_axis / self._frame.unit - 1
         down = np.sqrt(np.clip(1 - altitude / start, 0, 1))

@@ -160,7 +160,13 @@ class Recorder:
         self._last = replace(rows.take(block, slice(-1, None)), first=self._rows - 1, events=())
         if first:
             self._write_scene(complete=False)  # so that a recording cut off by a crash still says what it was
-        self._stream.flush()
+        self._flush()
+
+    def _flush(self) -> None:
+        try:
+            self._stream.flush(timeout_sec=60)
+        except RuntimeError as error:
+            raise RecordingError(f"the recording could not be written: {str(error).splitlines()[0]}") from None
 
     def _open(self, block: Run) -> None:
         self._setting = setting = block.setting
@@ -204,10 +210,10 @@ class Recorder:
 
     def _close(self) -> tuple[Path, ...]:
         if self._sinks and isinstance(self._sinks[0], Memory):
-            self._stream.flush()
+            self._flush()
             self._sinks[0].bytes = self._attached.drain_as_bytes()
         if any(isinstance(sink, Web) for sink in self._sinks):
-            self._stream.flush()  # disconnecting would stop the server; Recorded.serve does it
+            self._flush()  # disconnecting would stop the server; Recorded.serve does it
         else:
             self._stream.disconnect()
         files = [sink for sink in self._sinks if isinstance(sink, File)]

@@ -23,6 +23,7 @@ _WHERE = {
     "simulate_blocks": "sailviz.simulation",
     "Run": "sailviz.run",
     "record": "sailviz.recording",
+    "record_trajectory": "sailviz.trajectory",
     "read": "sailviz.recording",
     "Recording": "sailviz.recording",
     "compare": "sailviz.recording.comparison",

@@ -104,7 +104,7 @@ def write_oem(path, ephemeris: Ephemeris, comments=()) -> Path:
         scale = np.abs(e.position).max(), np.abs(e.velocity).max()
         if (
             len(back.time) != len(e.time)
-            or np.any(np.abs(back.time - (ns - ns[0]) * 1e-9) > 1e-9)
+            or np.any(np.abs(back.time - (ns - ns[0]) / 1e9) > 1e-9)
             or np.any(np.abs(back.position - e.position) > 1e-15 * scale[0])
             or np.any(np.abs(back.velocity - e.velocity) > 1e-15 * scale[1])
         ):
@@ -179,7 +179,7 @@ def read_oem(path) -> Ephemeris:
         segments[0]["REF_FRAME"].upper(),
         segments[0]["TIME_SYSTEM"].upper(),
         stamps[0],
-        (stamps - stamps[0]).astype(np.int64) * 1e-9,
+        (stamps - stamps[0]).astype(np.int64) / 1e9,
         states[:, :3],
         states[:, 3:],
     )

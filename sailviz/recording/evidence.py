@@ -208,7 +208,7 @@ def table_of(recording: Recording, name: str) -> Table:
     if line is None:
         raise RecordingError(f"{recording.path}: {name} stands on no timeline")
     time = table[line].cast(pa.int64()).to_numpy()
-    return Table(steps, time * 1e-9 if pa.types.is_temporal(table[line].type) else time.astype(float), columns)
+    return Table(steps, time / 1e9 if pa.types.is_temporal(table[line].type) else time.astype(float), columns)
 
 
 def epoch_of(recording: Recording) -> np.datetime64 | None:

@@ -1,0 +1,35 @@
+"""Draw a trajectory from another program: read an orbit ephemeris message and record it.
+
+Run it from anywhere: python from_oem.py [trajectory.oem [recording.rrd]]
+The file beside this script was made by: sailviz export displaced.rrd --to oem
+"""
+
+import sys
+from pathlib import Path
+
+import sailviz
+from sailviz.constants import MU_EARTH, MU_SUN
+from sailviz.oem import read_oem
+
+MU = {"SUN": MU_SUN, "EARTH": MU_EARTH}
+
+source = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).with_name("displaced.oem")
+target = sys.argv[2] if len(sys.argv) > 2 else f"{source.stem}.rrd"
+
+flight = read_oem(source)
+if flight.center not in MU:
+    sys.exit(f"{source}: sailviz knows no gravitational parameter for {flight.center.title()}")
+if flight.center == "SUN":
+    flight = flight.in_ecliptic()  # sailviz draws what circles the Sun over the ecliptic
+
+recorded = sailviz.record_trajectory(
+    flight.time,
+    flight.position,
+    flight.velocity,
+    target,
+    mu=MU[flight.center],
+    epoch=flight.utc,
+    title=flight.name.capitalize(),
+    about=f"Read from **{source.name}**.",
+)
+print(f"{flight.name}: {recorded.rows} rows round the {flight.center.title()}; recorded {target}")

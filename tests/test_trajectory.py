@@ -1,0 +1,183 @@
+"""Anybody's arrays, drawn as they are, or refused with everything that is wrong with them."""
+
+import runpy
+import subprocess
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import sailviz
+from sailviz.constants import AU, MU_EARTH, MU_SUN, RADIUS_EARTH
+from sailviz.elements import state
+from sailviz.run import Event
+from sailviz.trajectory import TrajectoryError, record_trajectory, trajectory
+
+SCRIPT = Path(__file__).parents[1] / "scenes" / "scripts" / "from_oem.py"
+ROWS = 50
+
+
+def ellipse(mu=MU_SUN, a=AU, e=0.2, rows=ROWS):
+    """time, position, velocity over a bit less than one turn of a Kepler orbit, by its true anomaly."""
+    nu = np.linspace(0, 6, rows)
+    half = np.arctan2(np.sqrt(1 - e) * np.sin(nu / 2), np.sqrt(1 + e) * np.cos(nu / 2))
+    time = (2 * half - e * np.sin(2 * half)) * np.sqrt(a**3 / mu)
+    return time, *state(a, e, 0.3, 0.4, 0.5, nu, mu)
+
+
+def test_a_ballistic_flight_has_the_elements_it_was_made_of():
+    run = trajectory(*ellipse())
+    assert np.allclose(run.elements.semi_major_axis, AU, rtol=1e-12)
+    assert np.allclose(run.elements.eccentricity, 0.2, atol=1e-12)
+    assert np.allclose(run.elements.inclination, 0.3, atol=1e-12)
+    assert not run.thrust.on.any()
+    assert run.setting.craft.kind == "none"
+    assert run.setting.body.name == "Sun"
+
+
+@pytest.mark.parametrize("sink", ["a.rrd", "b.rrd"])
+def test_it_is_recorded_bit_for_bit_with_the_same_views(sink, tmp_path):
+    time, position, velocity = ellipse()
+    thrust = 1e-4 * position / AU
+    recorded = record_trajectory(
+        time,
+        position,
+        velocity,
+        tmp_path / sink,
+        thrust=thrust,
+        epoch="2031-04-01T12:00Z",
+        events=[("half", time[25] + 5)],
+    )
+    back = sailviz.read(tmp_path / sink)
+    assert recorded.rows == ROWS
+    assert back.complete
+    assert np.array_equal(back["/state"]["position_m"], position)
+    assert np.array_equal(back["/state"]["time_s"], time)
+    assert np.array_equal(back["/thrust"]["acceleration_m_s2"], thrust)
+    assert str(back["/state"].timeline("utc")[0])[:16] == "2031-04-01T12:00"
+    assert [event.name for event in back.events] == ["half"]
+    assert "/world/planets/Earth/body" in back.entities
+    assert "System" in sailviz.recording.info(back)["views"]
+
+
+def test_the_same_arrays_have_the_same_identity_and_others_another():
+    time, position, velocity = ellipse()
+    one = trajectory(time, position, velocity).setting.identity
+    assert trajectory(time, position, velocity).setting.identity == one
+    position[3, 1] = np.nextafter(position[3, 1], 0)
+    assert trajectory(time, position, velocity).setting.identity != one
+
+
+def test_thrust_gives_pitch_and_a_normal_gives_a_sail():
+    time, position, velocity = ellipse()
+    r_hat = position / np.linalg.norm(position, axis=1)[:, None]
+    run = trajectory(time, position, velocity, thrust=1e-4 * r_hat)
+    assert run.setting.craft.kind == "thruster"
+    assert np.allclose(run.attitude.pitch, 0, atol=1e-12)
+    assert np.allclose(run.thrust.acceleration_rtn, [1e-4, 0, 0], atol=1e-18)
+    sail = trajectory(time, position, velocity, normal=2 * r_hat, thrust=1e-4 * r_hat, side=40.0, device="solar-sail")
+    assert np.allclose(np.linalg.norm(sail.attitude.normal, axis=1), 1)
+    assert sail.setting.craft.side == 40.0
+
+
+def test_what_circles_the_earth_is_drawn_round_the_earth(tmp_path):
+    time, position, velocity = ellipse(MU_EARTH, RADIUS_EARTH * 1.4, 0.1)
+    epoch = datetime(2031, 4, 1, tzinfo=UTC)
+    run = trajectory(
+        time, position, velocity, mu=MU_EARTH, epoch=epoch, mass=np.linspace(5, 4, ROWS), device="plasma-brake"
+    )
+    assert run.setting.body.name == "Earth"
+    assert set(run.bodies) == {"Sun"}
+    assert sailviz.record(run, tmp_path / "leo.rrd").complete
+
+
+def test_any_body_and_any_columns_are_drawn(tmp_path):
+    time, position, velocity = ellipse(1.7e10, 600e3, 0.05)
+    run = trajectory(
+        time, position, velocity, mu=1.7e10, body="Vesta", radius=262e3, environment={"drag_N": np.ones(ROWS)},
+        references={"rim": position[::5]}, events=[Event("seen", time[3], np.zeros(7))],
+    )  # fmt: skip
+    assert run.setting.body.name == "Vesta"
+    assert sailviz.record(run, tmp_path / "vesta.rrd").complete
+    assert np.array_equal(sailviz.read(tmp_path / "vesta.rrd")["/environment"]["drag_N"], np.ones(ROWS))
+
+
+def test_an_event_gets_the_state_between_its_rows():
+    time, position, velocity = ellipse(rows=400)
+    (event,) = trajectory(time, position, velocity, events=[("x", float(time[200] + time[201]) / 2)]).events
+    r = np.linalg.norm(event.state[:3])
+    energy = event.state[3:6] @ event.state[3:6] / 2 - MU_SUN / r
+    assert energy == pytest.approx(-MU_SUN / (2 * AU), rel=1e-7)
+
+
+def test_every_fault_is_named_at_once_with_what_was_wanted():
+    time, position, velocity = ellipse()
+    time[7] = time[6]
+    position[3, 1] = np.nan
+    with pytest.raises(ValueError, match="8 faults") as error:
+        trajectory(
+            time, position, velocity.T, thrust=np.zeros((4, 3)), mass=-1, mu=0, epoch="soon", device="kite",
+        )  # fmt: skip
+    text = str(error.value)
+    for word in (
+        f"time: does not increase from row 6 ({time[6]:.10g}) to row 7",
+        "position: row 3 is not a number (nan)",
+        "velocity: shape (3, 50), wanted (50, 3): transpose it",
+        "thrust: shape (4, 3), wanted (50, 3)",
+        "mass: must be positive",
+        "mu: must be a positive number",
+        "epoch: 'soon' is no date",
+        "device: 'kite' is not one of solar-sail",
+    ):
+        assert word in text
+
+
+@pytest.mark.parametrize(
+    ("change", "word"),
+    [
+        (lambda a: {"time": a["time"][:, None]}, r"time: shape \(50, 1\), wanted \(n,\)"),
+        (lambda a: {"time": []}, "time: has no values"),
+        (lambda a: {"position": "here"}, "position: not an array of numbers"),
+        (lambda a: {"position": a["position"] / 1e3}, "are these kilometres"),
+        (lambda a: {"velocity": a["velocity"] / 1e3}, "kilometres a second"),
+        (lambda a: {"position": a["position"] * (np.arange(50) != 4)[:, None]}, "row 4 is the centre of the Sun"),
+        (lambda a: {"normal": a["position"] * (np.arange(50) != 4)[:, None]}, "normal: row 4 is the zero vector"),
+        (lambda a: {"body": "Earth"}, "Earth does not go with mu"),
+        (lambda a: {"radius": -1.0}, "radius"),
+        (lambda a: {"mass": [1.0, 2.0]}, r"mass: shape \(2,\)"),
+        (lambda a: {"events": [("late", 1e12)]}, "'late' at 1000000000000.0 s is outside the run"),
+        (lambda a: {"environment": {"drag_N": [1.0]}}, r"environment\['drag_N'\]: shape \(1,\), wanted \(50,\)"),
+        (lambda a: {"references": {"x": [1.0, 2.0]}}, r"references\['x'\]: shape \(2,\), wanted \(k, 3\)"),
+    ],
+)
+def test_each_fault_names_its_argument(change, word):
+    arguments = dict(zip(("time", "position", "velocity"), ellipse(), strict=True))
+    with pytest.raises(TrajectoryError, match=word):
+        trajectory(**{**arguments, **change(arguments)})
+
+
+def test_the_arrays_stay_the_callers_own():
+    time, position, velocity = ellipse()
+    run = trajectory(time, position, velocity)
+    position[0] = 0
+    assert run.position[0].any()
+
+
+def test_the_example_reads_its_message_and_records_it(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "argv", [str(SCRIPT)])
+    runpy.run_path(str(SCRIPT))
+    assert "recorded displaced.rrd" in capsys.readouterr().out
+    position = sailviz.read("displaced.rrd")["/state"]["position_m"]
+    elevation = np.degrees(np.arcsin(position[:, 2] / np.linalg.norm(position, axis=1)))
+    assert np.allclose(elevation, 10, atol=1e-6)
+
+
+def test_the_example_refuses_a_body_it_does_not_know(tmp_path):
+    text = SCRIPT.with_name("displaced.oem").read_text().replace("= SUN", "= CERES")
+    (tmp_path / "a.oem").write_text(text)
+    done = subprocess.run([sys.executable, SCRIPT, tmp_path / "a.oem"], capture_output=True, text=True, cwd=tmp_path)
+    assert done.returncode == 1
+    assert "no gravitational parameter for Ceres" in done.stderr

@@ -26,7 +26,7 @@ class Pen:
         self._stream.send_columns(path, index, columns)
 
     def mesh(self, path: str, mesh: Mesh, color, shaded: bool = True, side: str | None = None) -> None:
-        """A mesh of one colour, `side` "front" or "back" alone if given. Unshaded is flat: for what glows, or is air."""
+        """A mesh of one colour, `side` "front" or "back" alone if given. Unshaded is flat: what glows, and air."""
         more = {"vertex_normals": f4(mesh.normals)} if shaded else {}
         if side:
             more["face_rendering"] = side

@@ -7,7 +7,7 @@ import pytest
 import rerun as rr
 
 from sailviz.errors import PropagationError, RecordingError
-from sailviz.recording import Memory, Recorder, digest, read, record
+from sailviz.recording import Connect, Memory, Recorder, digest, read, record
 
 
 def stopping(runs, run, error, after=2, size=50):
@@ -89,6 +89,14 @@ def test_sinks_that_exclude_each_other_are_refused(tmp_path):
     with pytest.raises(RecordingError, match="twice"):
         Recorder(tmp_path / "run.rrd", tmp_path / "." / "run.rrd")
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("url", "word"), [("nonsense", "no address"), ("rerun+http://127.0.0.1:9/proxy", "no viewer answers")]
+)
+def test_a_viewer_that_does_not_answer_is_refused_at_once(url, word):
+    with pytest.raises(RecordingError, match=word):
+        Recorder(Connect(url))
 
 
 def test_an_empty_run_is_refused(run, tmp_path):

@@ -376,7 +376,7 @@ def _blocks(p: Plan, block_rows, progress):
                 columns = (np.append(columns[0], now), np.hstack([columns[1], end]))
         if len(columns[0]):
             if setting is None:
-                planets = _planets_in_view(p, columns[1])
+                planets = _planets_in_view(p)
                 setting = _setting(p, planets, rows)
             block = _observed(p, *columns, first, off_time)
             bodies = _bodies(p, planets, block.time)
@@ -475,13 +475,22 @@ def _epoch(scene) -> np.datetime64 | None:
     return None if scene.epoch_utc is None else np.datetime64(scene.epoch_utc, "ns")
 
 
-def _planets_in_view(p: Plan, states) -> dict[str, np.ndarray]:
-    """Name -> orbit (k, 3) m of the planets that come within sight of the first block of a heliocentric run."""
+def _planets_in_view(p: Plan) -> dict[str, np.ndarray]:
+    """Name -> orbit (k, 3) m of the planets that a heliocentric run comes near."""
     if p.body.name != "Sun":
         return {}
-    reach = 1.15 * np.linalg.norm(states[:3], axis=0).max()
+    reach = 1.15 * _farthest(p)
     orbits = {name: ephemeris.planet_orbit(name, _epoch(p.scene)) for name in ephemeris.PLANETS}
     return {name: orbit for name, orbit in orbits.items() if np.linalg.norm(orbit, axis=1).min() <= reach}
+
+
+def _farthest(p: Plan) -> float:
+    """Largest distance from the centre, m, from a coarse run ahead: a millisecond, and the same for blocks of any size."""
+    times = np.linspace(0.0, p.scene.propagation.duration, 256)
+    out = np.empty((6, len(times)))
+    state = dop853.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
+    dop853.advance(state, p.model, p.breaks, p.factors, p.watch, times, out, times[-1], 1e-7, np.inf)
+    return float(np.linalg.norm(out[:3, : dop853.rows_done(state)], axis=0).max())
 
 
 def _bodies(p: Plan, planets, time) -> dict[str, np.ndarray]:

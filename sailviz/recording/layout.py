@@ -157,9 +157,11 @@ def about_sun(radius: float, lowest: float, highest: float, setting: Setting) ->
     direction = unit(np.array([0.11, -0.90, 0.41] if lifted else [0.05, -0.84, 0.53]))
     # the eye sees a third of its distance up and down: an orbit seen aslant and what rises above it must fit in
     half = 0.5 * (highest - lowest) * np.hypot(*direction[:2]) + look.DISC_RADIUS * radius * direction[2]
-    distance = max((2.08 if lifted else 1.9) * radius, half / 0.33)
+    distance = max((2.08 if lifted else 1.6) * radius, half / (0.33 if lifted else 0.40))
     raised = 0.45 * (highest + lowest) if highest - lowest > 0.4 * radius else 0.0
-    middle = np.array([0.0, 0.0, 0.02 * radius + raised])
+    # the near half of an orbit looks larger than the far one: look at a point in front of the Sun
+    nearer = 0.0 if lifted else -0.3 * radius
+    middle = np.array([0.0, nearer, 0.02 * radius + raised])
     sail = setting.craft.kind == "solar-sail"
     follow = np.array([-0.42, 0.50, 0.26] if sail else [0.30, -0.62, 0.26]) * radius
     return [

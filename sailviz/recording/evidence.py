@@ -31,7 +31,7 @@ from sailviz.run import Run
 TRUTH = ("/state", "/attitude", "/thrust", "/elements", "/environment")
 APART = (*TRUTH, "/events", "/scene", "/about")  # not part of the picture
 FACTS = ("title", "family", "body", "body_mu_m3_s2", "craft_kind", "rows", "complete", "ended", "identity", "versions")
-FACTS += ("accuracy", "text")
+FACTS += ("body_radius_m", "accuracy", "text")
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,7 @@ def of_run(run: Run, label: str) -> Evidence:
         "family": setting.family,
         "body": setting.body.name,
         "body_mu_m3_s2": setting.body.mu,
+        "body_radius_m": setting.body.radius,
         "craft_kind": setting.craft.kind,
         "rows": len(run),
         "complete": True,

@@ -1,0 +1,203 @@
+"""Runs held to baselines: some rows of the truth as float64, all events, and beside them what may differ."""
+
+from __future__ import annotations
+
+import difflib
+import os
+import shutil
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from sailviz.errors import RecordingError
+from sailviz.recording.comparison import Comparison, compare, default_tolerance
+from sailviz.recording.evidence import Evidence, evidence
+from sailviz.recording.exporter import _atomic, _write_npz, arrays
+from sailviz.run import Run
+
+HEAD = """\
+# How far a run may differ from {name}.npz, column by column, each in its own unit.
+# Made with 1e-9 of the largest value; edit freely, --sailviz-update keeps what stands here.
+"""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a check. `comparison` is None where there was no baseline."""
+
+    passed: bool
+    comparison: Comparison | None
+    report: str
+    folder: Path | None = None
+
+
+class Regression:
+    """A baseline: NAME.npz with the numbers, NAME.toml with the allowed differences."""
+
+    def __init__(self, folder: Path, name: str, *, rows: int = 60, atol=None, rtol=None):
+        self.baseline = Path(folder) / f"{name}.npz"
+        self.tolerances = Path(folder) / f"{name}.toml"
+        self.name, self.rows = name, rows
+        self._atol, self._rtol = _named(atol), _named(rtol)
+
+    def update(self, source, values=None) -> None:
+        """Write the baseline from a scene or run. Tolerances that stand in the file stay."""
+        data = evidence(self._run(source, values))
+        self.baseline.parent.mkdir(parents=True, exist_ok=True)
+        _atomic(self.baseline, lambda part: _write_npz(part, self._thinned(data), compressed=True))
+        kept = self._read_tolerances() if self.tolerances.exists() else {}
+        atol = {name: kept.get("atol", {}).get(name, value) for name, value in _defaults(data).items()}
+        lines = [HEAD.format(name=self.name), f"rtol = {_number(kept.get('rtol', 0.0))}", "", "[atol]"]
+        lines += [f'"{name}" = {_number(value)}' for name, value in atol.items()]
+        self.tolerances.write_text("\n".join([*lines, ""]))
+
+    def check(self, source, values, leave_in: Callable[[], Path], pictures: bool = True) -> Outcome:
+        """Compare a scene or run with the baseline; where they differ, leave everything that helps in a folder."""
+        source = self._run(source, values)
+        data = evidence(source)
+        if not self.baseline.exists():
+            folder = leave_in()
+            self._keep_new(folder, data, source)
+            hint = f"there is no baseline {self.baseline}; look at {folder}, then run pytest --sailviz-update"
+            return Outcome(False, None, hint, folder)
+        kept = self._read_tolerances()
+        comparison = compare(
+            self.baseline,
+            data,
+            on="step",
+            atol={**_known(kept.get("atol", {}), data), **self._atol},
+            rtol={"": kept.get("rtol", 0.0), **self._rtol},
+            picture=False,
+        )
+        if comparison.equal:
+            return Outcome(True, comparison, str(comparison))
+        folder = leave_in()
+        (folder / "difference.txt").write_text(f"{comparison}\n")
+        shutil.copy(self.baseline, folder / "baseline.npz")
+        if self.tolerances.exists():
+            shutil.copy(self.tolerances, folder / "baseline.toml")
+        self._keep_new(folder, data, source)
+        said = _pictures(folder) if pictures else ""
+        report = f"{comparison}\n\nA is the baseline, B the new run. {folder} holds both and this table{said}."
+        return Outcome(False, comparison, report, folder)
+
+    @staticmethod
+    def _run(source, values):
+        """A scene is run, everything else is taken as it is."""
+        if isinstance(source, str | os.PathLike) and Path(source).suffix in (".rrd", ".npz"):
+            return source
+        from sailviz.scene import Scene, load_scene
+
+        if isinstance(source, str | os.PathLike):
+            source = load_scene(source)
+        if not isinstance(source, Scene):
+            return source
+        from sailviz.simulation import simulate
+
+        return simulate(source.with_values(values) if values else source)
+
+    def _thinned(self, data: Evidence) -> dict[str, np.ndarray]:
+        count = len(data.table("/state"))
+        if count <= self.rows:
+            return arrays(data)
+        return arrays(data, rows=np.unique(np.round(np.linspace(0, count - 1, self.rows)).astype(int)))
+
+    def _keep_new(self, folder: Path, data: Evidence, source) -> None:
+        """The new rows, and the whole recording of a run."""
+        _write_npz(folder / "new.npz", self._thinned(data), compressed=True)
+        if isinstance(source, Run):
+            from sailviz.recording import record
+
+            record(source, folder / "new.rrd")
+
+    def _read_tolerances(self) -> dict:
+        try:
+            return tomllib.loads(self.tolerances.read_text())
+        except FileNotFoundError:
+            return {}
+        except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+            raise RecordingError(f"{self.tolerances} is not valid TOML: {error}") from None
+
+
+def _named(tolerance) -> dict[str, float]:
+    if tolerance is None:
+        return {}
+    return dict(tolerance) if isinstance(tolerance, dict) else {"": float(tolerance)}
+
+
+def _known(atol: dict, data: Evidence) -> dict[str, float]:
+    """Tolerances of columns that are gone say nothing: the comparison will tell that they are gone."""
+    names = set(_defaults(data))
+    for name in atol:
+        if name not in names and not name.startswith("/"):
+            near = difflib.get_close_matches(name, names, 1)
+            raise RecordingError(f"a tolerance is given for {name}" + (f"; did you mean {near[0]}?" if near else ""))
+    return {name: value for name, value in atol.items() if name in names}
+
+
+def _defaults(data: Evidence) -> dict[str, float]:
+    """Default tolerance of every column, two digits."""
+    found = {}
+    for entity in data.entities:
+        for name, values in data.table(entity).columns.items():
+            if values.dtype.kind == "f":
+                found[f"{entity}:{name}"] = float(f"{default_tolerance(name, values):.2g}")
+    if data.events:
+        states = np.array([event.state for event in data.events])
+        times = np.array([event.time for event in data.events])
+        for name, values in (
+            ("time_s", times),
+            ("position_m", states[:, :3]),
+            ("velocity_m_s", states[:, 3:6]),
+            ("mass_kg", states[:, 6]),
+        ):
+            found[f"/events:{name}"] = float(f"{default_tolerance(name, values):.2g}")
+    return found
+
+
+def _number(value: float) -> str:
+    text = f"{value:g}"
+    return text if any(c in text for c in ".e") else f"{text}.0"
+
+
+def _pictures(folder: Path) -> str:
+    """Pictures of the same rows of both, where there is Vulkan -> what to say about them."""
+    from sailviz.recording.shot import has_vulkan, picture
+
+    if not has_vulkan():
+        return "; no pictures, for want of Vulkan"
+    try:
+        for side in ("baseline", "new"):
+            from sailviz.recording import record
+
+            record(_run_of(folder / f"{side}.npz", side), folder / f"{side}_rows.rrd")
+            picture(folder / f"{side}_rows.rrd", folder / f"{side}.png", size=(1280, 720))
+    except RecordingError as error:
+        return f"; no pictures: {error}"
+    return ", and two pictures"
+
+
+def _run_of(path: Path, side: str) -> Run:
+    """The rows of an archive as a Run, to be looked at."""
+    from sailviz.trajectory import trajectory
+
+    data = evidence(path)
+    tables = {entity: data.table(entity).columns for entity in data.entities}
+    state, facts = tables["/state"], data.facts
+    return trajectory(
+        state["time_s"],
+        state["position_m"],
+        state["velocity_m_s"],
+        normal=tables["/attitude"]["normal"],
+        thrust=tables["/thrust"]["acceleration_m_s2"],
+        mass=state["mass_kg"],
+        mu=facts["body_mu_m3_s2"],
+        radius=facts.get("body_radius_m"),
+        epoch=data.epoch,
+        device=facts["craft_kind"],
+        title=f"{facts['title']} ({side}, {len(state['time_s'])} rows)",
+        events=[],
+    )

@@ -46,6 +46,12 @@ def parameters_in_words(scene, design, strength) -> list[tuple[str, str]]:
             ("Ω / Ω_K", f"{start.rate_ratio:.6g}"),
             ("cone angle", angle(float(design.cone))),
         ]
+    elif start.kind in ("heliostationary", "lagrange-point"):
+        rows += [("distance from the Sun", length(start.radius))]
+    elif start.kind == "planet-following":
+        rows += [("elevation", angle(start.elevation)), ("distance over the planet's", f"{start.radius_ratio:.6g}")]
+    elif start.kind == "flat-ellipse":
+        rows += [("height", length(start.height)), ("eccentricity", f"{start.eccentricity:.6g}")]
     elif start.kind == "spiral":
         rows += [("flight-path angle", angle(float(design.flight_path_angle)))]
     elif start.kind == "circular":
@@ -69,7 +75,7 @@ def parameters_in_words(scene, design, strength) -> list[tuple[str, str]]:
     steering = scene.steering
     if steering is not None and steering.kind in ("orbital", "meridian"):
         rows += [("pitch", angle(steering.pitch))]
-    elif steering is not None and steering.kind == "as designed":
+    elif steering is not None and steering.kind == "as designed" and getattr(design.pitch, "ndim", 0) == 0:
         rows += [("pitch", angle(float(design.pitch)))]
     wind = scene.environment.solar_wind
     if wind.kind == "gamma":

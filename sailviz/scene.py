@@ -118,7 +118,14 @@ class CircularStart(Section):
         return self
 
 
-class DisplacedStart(Section):
+class DesignedStart(Section):
+    """On an orbit that the device is designed to hold, or a little beside it."""
+
+    position_offset: PositionVector = [0.0, 0.0, 0.0]
+    velocity_offset: VelocityVector = [0.0, 0.0, 0.0]
+
+
+class DisplacedStart(DesignedStart):
     """On a circular displaced non-Keplerian orbit: Sun distance, elevation over the ecliptic, Omega / Omega_K."""
 
     kind: Literal["displaced"]
@@ -126,6 +133,51 @@ class DisplacedStart(Section):
     elevation: Annotated[Angle, QUARTER_TURN]
     rate_ratio: Annotated[float, POSITIVE]
     azimuth: Angle = 0.0
+
+
+class HeliostationaryStart(DesignedStart):
+    """At rest, the thrust balancing the Sun's pull."""
+
+    kind: Literal["heliostationary"]
+    radius: Annotated[Length, POSITIVE]
+    elevation: Annotated[Angle, QUARTER_TURN] = 0.0
+    azimuth: Angle = 0.0
+
+
+class LagrangeStart(DesignedStart):
+    """At an artificial Lagrange point on the line from the Sun to a planet, environment.third_body or a massless Earth."""
+
+    kind: Literal["lagrange-point"]
+    radius: Annotated[Length, POSITIVE]
+
+
+class PlanetFollowingStart(DesignedStart):
+    """Over a planet on its ellipse, at its longitude, at a fixed elevation and a fixed share of its distance; perihelion on
+    the x axis."""
+
+    kind: Literal["planet-following"]
+    planet: Literal["mercury", "venus", "earth", "mars", "jupiter"] | None = None
+    semi_major_axis: Annotated[Length, POSITIVE] | None = None
+    eccentricity: Annotated[float, Field(ge=0, lt=1)] | None = None
+    elevation: Annotated[Angle, QUARTER_TURN]
+    radius_ratio: Annotated[float, POSITIVE] = 1.0
+    true_anomaly: Angle = 0.0
+
+    @model_validator(mode="after")
+    def _which(self):
+        _one_of(self, "planet", "semi_major_axis+eccentricity")
+        return self
+
+
+class FlatEllipseStart(DesignedStart):
+    """On a Keplerian ellipse lifted off the ecliptic, its focus above the Sun; perihelion on the x axis."""
+
+    kind: Literal["flat-ellipse"]
+    semi_latus_rectum: Annotated[Length, POSITIVE]
+    eccentricity: Annotated[float, Field(ge=0, lt=1)]
+    height: Length
+    mu_ratio: Annotated[float, POSITIVE] = 1.0
+    true_anomaly: Angle = 0.0
 
 
 class SpiralStart(Section):
@@ -137,8 +189,18 @@ class SpiralStart(Section):
 
 
 Start = Annotated[
-    CartesianStart | ElementsStart | CircularStart | DisplacedStart | SpiralStart, Field(discriminator="kind")
+    CartesianStart
+    | ElementsStart
+    | CircularStart
+    | DisplacedStart
+    | HeliostationaryStart
+    | LagrangeStart
+    | PlanetFollowingStart
+    | FlatEllipseStart
+    | SpiralStart,
+    Field(discriminator="kind"),
 ]
+HELD_STARTS = ("displaced", "heliostationary", "lagrange-point", "planet-following", "flat-ellipse")
 
 # ---------------------------------------------------------------- what flies
 DESIGNED = Literal["as designed"]
@@ -285,19 +347,20 @@ class InertialSteering(Section):
 
 
 class TableSteering(Section):
-    """Pitch and clock angle over time."""
+    """Pitch, clock angle and throttle over time."""
 
     kind: Literal["table"]
     frame: Literal["orbital", "meridian"] = "orbital"
-    interpolation: Literal["linear", "hold"] = "linear"
+    interpolation: Literal["linear", "hold", "cubic"] = "linear"
     time: Annotated[Times, Field(min_length=2)]
     pitch: Angles
     clock: Angles
+    throttle: list[Annotated[float, Field(ge=0)]] | None = None
 
     @model_validator(mode="after")
     def _columns(self):
-        if not len(self.time) == len(self.pitch) == len(self.clock):
-            raise _wrong("time, pitch and clock must have the same length")
+        if len({len(c) for c in (self.time, self.pitch, self.clock, self.throttle) if c is not None}) > 1:
+            raise _wrong("time, pitch, clock and throttle must have the same length")
         if any(b <= a for a, b in zip(self.time, self.time[1:], strict=False)):
             raise _wrong("time must increase")
         return self
@@ -345,11 +408,21 @@ class DensityProfile(Section):
     ion_mass: Annotated[IonMass, POSITIVE] = 15.999 * 1.66053906660e-27
 
 
+class ThirdBody(Section):
+    """A planet on a circular orbit in the ecliptic, whose gravity acts on the craft."""
+
+    name: str = "Earth"
+    mu: Annotated[Mu, POSITIVE] = 3.986004418e14
+    radius: Annotated[Length, POSITIVE] = 149_597_870_700.0
+    azimuth: Angle = 0.0
+
+
 class Environment(Section):
     """Everything around the craft but the point mass it orbits."""
 
     solar_wind: Annotated[SteadyWind | GammaWind, Field(discriminator="kind")] = SteadyWind(kind="steady")
     ionosphere: Annotated[ForceProfile | DensityProfile, Field(discriminator="kind")] | None = None
+    third_body: ThirdBody | None = None
     j2: bool = False
     corotation: bool = False
 
@@ -387,7 +460,8 @@ class Watched(Section):
     def _level(self):
         for field in ("radius", "altitude"):
             if (self.kind == field) != (getattr(self, field) is not None):
-                raise _wrong(f'{field} belongs to kind = "{field}" and to no other')
+                needs = f'kind = "{field}" needs {field}'
+                raise _wrong(needs if self.kind == field else f'{field} belongs to kind = "{field}" and to no other')
         return self
 
 
@@ -463,7 +537,7 @@ class Scene(Section):
     def with_values(self, values: dict[str, Any]) -> Scene:
         """A copy with other values. values : {"device.lightness_number": 0.1, "propagation.duration_yr": 2}, keys and units as
         in a scene file; a key in another unit replaces the one in the file. SceneError as for `load_scene`."""
-        return _validated(_overridden(self._raw, values), self._text, self._source)
+        return _built(self._raw, values, self._text, self._source)
 
     @property
     def epoch_utc(self) -> datetime | None:
@@ -482,6 +556,7 @@ def _conflicts(scene: Scene) -> list[tuple[str, str]]:
     device, steering, start = scene.device, scene.steering, scene.start
     sail = device.kind in ("solar-sail", "electric-sail")
     law = steering.kind if steering else None
+    duration = scene.propagation.duration
     if sail and scene.body != "sun":
         found.append(("device.kind", f"a {device.kind} needs the Sun as its central body"))
     if device.kind == "plasma-brake":
@@ -497,15 +572,20 @@ def _conflicts(scene: Scene) -> list[tuple[str, str]]:
     if sail and law in ("circumferential", "tangential", "vertical"):
         found.append(("steering.kind", f'"{law}" is a thruster\'s law; a sail is steered by pitch and clock angle'))
     designed = getattr(device, "characteristic_acceleration", None) == "as designed"
-    if start.kind != "displaced":
+    if start.kind not in HELD_STARTS:
+        needs = f'"as designed" needs a start.kind that is held: {", ".join(HELD_STARTS)}'
         if designed:
-            found.append(("device.characteristic_acceleration", '"as designed" needs start.kind = "displaced"'))
+            found.append(("device.characteristic_acceleration", needs))
         if law == "as designed":
-            found.append(("steering.kind", '"as designed" needs start.kind = "displaced"'))
+            found.append(("steering.kind", needs))
     elif not sail:
-        found.append(("start.kind", "a displaced orbit is held by a solar sail or an electric sail"))
+        found.append(("start.kind", f"{start.kind}: such an orbit is held by a solar sail or an electric sail"))
     elif device.kind == "electric-sail" and device.model != "final":
-        found.append(("device.model", 'a displaced orbit is designed with the "final" model'))
+        found.append(("device.model", 'orbits are designed with the "final" model'))
+    elif start.kind in ("planet-following", "flat-ellipse") and (not designed or law != "as designed"):
+        found.append(("start.kind", f'{start.kind} needs characteristic_acceleration and steering "as designed"'))
+    if scene.environment.third_body is not None and scene.body != "sun":
+        found.append(("environment.third_body", "a third body goes round the Sun"))
     if start.kind == "spiral":
         if device.kind != "solar-sail":
             found.append(("start.kind", "a logarithmic spiral is flown by a solar sail"))
@@ -517,6 +597,10 @@ def _conflicts(scene: Scene) -> list[tuple[str, str]]:
         found.append(("start.altitude", "the body has no radius to measure an altitude from"))
     if scene.environment.solar_wind.kind != "steady" and device.kind != "electric-sail":
         found.append(("environment.solar_wind", "the solar wind acts on an electric sail only"))
+    if scene.environment.solar_wind.kind == "gamma" and duration / scene.environment.solar_wind.redraw > 1e7:
+        found.append(("environment.solar_wind.redraw", "more than ten million draws in one run"))
+    if scene.epoch is not None and not 1700 <= scene.epoch.year <= 2262 - duration / 3.15576e7:
+        found.append(("epoch", "the run must lie between the years 1700 and 2262, what 64 bits of nanoseconds reach"))
     if scene.environment.j2 and scene.body != "earth":
         found.append(("environment.j2", 'j2 is known for body = "earth"'))
     if sail and law in ("orbital", "meridian", "table"):
@@ -534,7 +618,7 @@ def _conflicts(scene: Scene) -> list[tuple[str, str]]:
         if expected.at not in (None, "start", "end", "min", "max") and expected.at not in names:
             words = ["start", "end", "min", "max", *sorted(names)]
             found.append((f"expect[{i}].at", f'no such moment "{expected.at}". {nearest(expected.at, words)}'))
-        if expected.at_time is not None and not 0 <= expected.at_time <= scene.propagation.duration:
+        if expected.at_time is not None and not 0 <= expected.at_time <= duration:
             found.append((f"expect[{i}].at_time", "outside the run"))
     return found
 
@@ -552,27 +636,40 @@ def load_scene(source, set: dict[str, Any] | None = None) -> Scene:
     Raises SceneError with every fault at once.
     """
     if isinstance(source, dict):
-        return _validated(_overridden(source, set or {}), "", "scene")
+        return _built(source, set or {}, "", "scene")
     path, name = _find(source)
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
         raise SceneError(faults_of([("file", error.strerror or str(error))]), name) from None
     except UnicodeDecodeError:
         raise SceneError(faults_of([("file", "is not UTF-8 text, so not a scene")]), name) from None
     try:
         raw = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # tomllib's own, or Python's for a number of thousands of digits
         raise SceneError(faults_of([("file", f"is not valid TOML: {error}")]), name) from None
     except RecursionError:
-        raise SceneError(faults_of([("file", "is nested too deeply")]), name) from None
-    return _validated(_overridden(raw, set or {}), text, name)
+        raise SceneError(faults_of([_TOO_DEEP]), name) from None
+    return _built(raw, set or {}, text, name)
+
+
+_TOO_DEEP = ("file", "is nested too deeply")
+
+
+def _built(raw: dict, values: dict[str, Any], text: str, name: str) -> Scene:
+    try:
+        return _validated(_overridden(raw, values), text, name)
+    except RecursionError:
+        raise SceneError(faults_of([_TOO_DEEP]), name) from None
 
 
 def _find(source) -> tuple[Path, str]:
     path = Path(source)
-    if path.is_file():
-        return path, str(source)
+    try:
+        if path.is_file():
+            return path, str(source)
+    except OSError as error:  # a name that no file can have
+        raise SceneError(faults_of([("file", error.strerror or str(error))]), str(source)) from None
     known = shipped_scenes()
     name = str(source).removesuffix(".toml")
     if name in known:
@@ -588,7 +685,7 @@ def _overridden(raw: dict, values: dict[str, Any]) -> dict:
         *path, last = key.split(".")
         table = result
         for part in path:
-            if isinstance(table, list) and part.isdigit() and int(part) < len(table):
+            if isinstance(table, list) and part.isdecimal() and len(part) < 9 and int(part) < len(table):
                 table = table[int(part)]
                 continue
             if isinstance(table, dict) and not isinstance(table.get(part, {}), (dict, list)):

@@ -30,6 +30,7 @@ from sailviz.constants import (
 )
 from sailviz.describe import parameters_in_words
 from sailviz.design import displaced, spirals
+from sailviz.design.holding import Track
 from sailviz.environment import ionosphere, solar_wind
 from sailviz.errors import Fault, PropagationError, SceneError
 from sailviz.propagate import dop853, dynamics
@@ -37,7 +38,7 @@ from sailviz.propagate import events as happening
 from sailviz.propulsion import electric_sail
 from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.run import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust, join
-from sailviz.scene import Scene
+from sailviz.scene import HELD_STARTS, Scene
 
 BLOCK_ROWS = 8192
 DEFAULT_OUTPUTS = 1000
@@ -75,12 +76,12 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
     design = _design(scene)
     position, velocity = _initial_state(scene, body, design)
     device, device_parameters = _device(scene, design)
-    law_id, law_parameters, table = _steering(scene, design)
+    law_id, law_parameters, table, interpolation = _steering(scene, design)
     keep = []
     user_steering = user_force = 0
     if steering is not None:
         user_steering, handle = dynamics.user_address(steering, "steering")
-        law_id, law_parameters, table = law.USER, (), None
+        law_id, law_parameters, table, interpolation = law.USER, (), None, law.LINEAR
         keep.append(handle)
     if force is not None:
         user_force, handle = dynamics.user_address(force, "force")
@@ -94,12 +95,13 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
         device_parameters=device_parameters,
         steering=law_id,
         steering_parameters=law_parameters,
-        held=getattr(scene.steering, "interpolation", "") == "hold",
+        interpolation=interpolation,
         table=table,
         j2_strength=1.5 * J2_EARTH * MU_EARTH * RADIUS_EARTH**2 if scene.environment.j2 else 0.0,
         surface_radius=body.radius,
         rotation=ROTATION_EARTH if earth and scene.environment.corotation else 0.0,
         plasma=_plasma(scene, body),
+        third_body=_third_body(scene),
         user_steering=user_steering,
         user_force=user_force,
     )
@@ -147,9 +149,18 @@ def _film(scene) -> Film:
 def _design(scene):
     """The closed form behind a start "on the designed orbit"; SceneError where it does not exist."""
     start = scene.start
-    if start.kind == "displaced":
+    if start.kind in HELD_STARTS:
         device = "electric-sail" if scene.device.kind == "electric-sail" else _film(scene)
-        found = displaced.circular(start.radius, start.elevation, start.rate_ratio, device)
+        third = scene.environment.third_body
+        if start.kind == "displaced":
+            found = displaced.circular(start.radius, start.elevation, start.rate_ratio, device)
+        elif start.kind == "heliostationary":
+            found = displaced.heliostationary(start.radius, device)
+        elif start.kind == "lagrange-point":
+            planet = {} if third is None else {"planet_mu": third.mu, "planet_orbit": third.radius}
+            found = displaced.lagrange_point(start.radius, device, **planet)
+        else:
+            return _track(scene, device)
     elif start.kind == "spiral":
         found = spirals.logarithmic(
             _film(scene).lightness(_sail_strength(scene, None)),
@@ -163,12 +174,53 @@ def _design(scene):
     return found
 
 
+TRACK_POINTS = 720  # of the steering table, per revolution: its cubic is then good to 1e-10
+
+
+def _track(scene, device):
+    """The Track of an elliptic displaced orbit over the whole run, at equal steps of true anomaly."""
+    from sailviz.design import displaced_tracks
+
+    start = scene.start
+    if start.kind == "planet-following":
+        a, e = start.semi_major_axis, start.eccentricity
+        if start.planet is not None:
+            a, e, *_ = (float(value[0]) for value in ephemeris.planet_elements(start.planet.capitalize(), 0.0))
+        period = 2 * np.pi * np.sqrt(a**3 / MU_SUN)
+    else:
+        e = start.eccentricity
+        period = 2 * np.pi * np.sqrt((start.semi_latus_rectum / (1 - e * e)) ** 3 / (start.mu_ratio * MU_SUN))
+    turns = scene.propagation.duration / period + 1.1
+    anomaly = start.true_anomaly + 2 * np.pi * np.arange(int(turns * TRACK_POINTS)) / TRACK_POINTS
+
+    def track(nu):
+        if start.kind == "planet-following":
+            return displaced_tracks.planet_following(a, e, nu, start.elevation, start.radius_ratio, device)
+        return displaced_tracks.flat_ellipse(start.semi_latus_rectum, e, nu, start.height, start.mu_ratio, device)
+
+    found = track(anomaly)
+    if not np.all(found.feasible):
+        reason = track(anomaly[np.argmin(found.feasible)]).reason
+        raise SceneError([Fault("start", f"this orbit is infeasible: {reason}.")], scene.source)
+    return found
+
+
 def _initial_state(scene, body, design):
     start = scene.start
+    if start.kind in HELD_STARTS:
+        if start.kind == "displaced":
+            position, velocity = displaced.state(start.radius, start.elevation, start.rate_ratio, start.azimuth)
+        elif start.kind == "heliostationary":
+            position, velocity = displaced.state(start.radius, start.elevation, 0.0, start.azimuth)
+        elif start.kind == "lagrange-point":
+            third = scene.environment.third_body
+            orbit, azimuth = (AU, 0.0) if third is None else (third.radius, third.azimuth)
+            position, velocity = displaced.state(start.radius, 0.0, (start.radius / orbit) ** 1.5, azimuth)
+        else:
+            position, velocity = design.position[0], design.velocity[0]
+        return position + start.position_offset, velocity + start.velocity_offset
     if start.kind == "cartesian":
         return np.array(start.position), np.array(start.velocity)
-    if start.kind == "displaced":
-        return displaced.state(start.radius, start.elevation, start.rate_ratio, start.azimuth)
     if start.kind == "spiral":
         return design.state(start.radius, start.azimuth, body.mu)
     if start.kind == "circular":
@@ -193,7 +245,7 @@ def _sail_strength(scene, design) -> float:
     """Characteristic acceleration, m/s2, of either sail."""
     device = scene.device
     if device.characteristic_acceleration == "as designed":
-        return float(design.characteristic_acceleration)
+        return float(np.max(design.characteristic_acceleration))  # of a track: at full throttle
     if device.characteristic_acceleration is not None:
         return device.characteristic_acceleration
     if device.kind == "electric-sail":
@@ -233,20 +285,36 @@ def _device(scene, design):
 
 
 def _steering(scene, design):
-    """(id, parameters, table or None) for the right-hand side."""
+    """(id, parameters, table or None, interpolation) for the right-hand side."""
     steering = scene.steering
+    plain = (None, law.LINEAR)
     if steering is None:
-        return law.RADIAL, (), None
+        return law.RADIAL, (), *plain
+    if steering.kind == "as designed" and isinstance(design, Track):
+        table = law.table(
+            design.time - design.time[0], design.pitch, np.unwrap(design.clock), design.throttle, "cubic"
+        )
+        return law.TABLE_ORBITAL, (), table, law.CUBIC
     if steering.kind == "as designed":
-        return law.ORBITAL, law.direction_parameters(float(design.pitch), float(design.clock)), None
+        if np.ndim(design.pitch) == 0 and design.pitch == 0:  # Sun-facing needs no orbit plane, and may have none
+            return law.RADIAL, (), *plain
+        return law.ORBITAL, law.direction_parameters(float(design.pitch), float(design.clock)), *plain
     if steering.kind == "table":
-        table = np.column_stack([steering.time, steering.pitch, steering.clock])
-        return (law.TABLE_ORBITAL if steering.frame == "orbital" else law.TABLE_MERIDIAN), (), table
+        table = law.table(steering.time, steering.pitch, steering.clock, steering.throttle, steering.interpolation)
+        kind = law.TABLE_ORBITAL if steering.frame == "orbital" else law.TABLE_MERIDIAN
+        return kind, (), table, law.INTERPOLATIONS[steering.interpolation]
     if steering.kind == "inertial":
-        return law.INERTIAL, tuple(frames.unit(steering.direction)), None
+        return law.INERTIAL, tuple(frames.unit(steering.direction)), *plain
     if steering.kind in ("orbital", "meridian"):
-        return law.LAWS[steering.kind], law.direction_parameters(steering.pitch, steering.clock), None
-    return law.LAWS[steering.kind], (), None
+        return law.LAWS[steering.kind], law.direction_parameters(steering.pitch, steering.clock), *plain
+    return law.LAWS[steering.kind], (), *plain
+
+
+def _third_body(scene):
+    third = scene.environment.third_body
+    if third is None:
+        return ()
+    return third.mu, third.radius, np.sqrt(MU_SUN / third.radius**3), third.azimuth
 
 
 def _plasma(scene, body):
@@ -275,7 +343,8 @@ def _schedule(scene, table):
         wind_factors = solar_wind.thrust_factor(pressures, reference)
     intervals = scene.device.active
     edges = [edge for pair in intervals or [] for edge in pair]
-    knots = [] if table is None else table[:, 0]
+    smooth = table is None or getattr(scene.steering, "interpolation", "cubic") == "cubic"
+    knots = [] if smooth else table[:, 0]
     breaks = np.unique(np.concatenate([[0.0], wind_times, edges, knots]))
     breaks = breaks[(breaks >= 0) & (breaks < duration)]
     drawn = np.searchsorted(wind_times, breaks, side="right") - 1
@@ -479,6 +548,10 @@ def _planets_in_view(p: Plan) -> dict[str, np.ndarray]:
     """Name -> orbit (k, 3) m of the planets that a heliocentric run comes near."""
     if p.body.name != "Sun":
         return {}
+    third = p.scene.environment.third_body
+    if third is not None:  # the planets of this scene are the one whose gravity acts
+        turn = np.linspace(0, 2 * np.pi, 361)
+        return {third.name: third.radius * np.column_stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)])}
     reach = 1.15 * _farthest(p)
     orbits = {name: ephemeris.planet_orbit(name, _epoch(p.scene)) for name in ephemeris.PLANETS}
     return {name: orbit for name, orbit in orbits.items() if np.linalg.norm(orbit, axis=1).min() <= reach}
@@ -495,6 +568,11 @@ def _farthest(p: Plan) -> float:
 
 def _bodies(p: Plan, planets, time) -> dict[str, np.ndarray]:
     """Positions (n, 3) m of what is drawn beside the craft; nothing without an epoch."""
+    third = p.scene.environment.third_body
+    if third is not None:
+        _, radius, rate, azimuth = _third_body(p.scene)
+        angle = azimuth + rate * time
+        return {third.name: radius * np.column_stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)])}
     epoch = _epoch(p.scene)
     if epoch is None:
         return {}
@@ -542,7 +620,7 @@ def _family(scene) -> str:
         return "deorbit"
     if scene.environment.solar_wind.kind != "steady":
         return "wind"
-    return "displaced" if scene.start.kind == "displaced" else "spirals"
+    return "displaced" if scene.start.kind in HELD_STARTS else "spirals"
 
 
 def _craft(scene) -> Craft:
@@ -577,6 +655,8 @@ def _references(p: Plan, planets) -> tuple[Reference, ...]:
         rho, z = start.radius * np.cos(start.elevation), start.radius * np.sin(start.elevation)
         ring = np.column_stack([rho * np.cos(turn), rho * np.sin(turn), np.full_like(turn, z)])
         found.append(Reference("designed orbit", "target", ring))
+    elif isinstance(p.design, Track):
+        found.append(Reference("designed orbit", "target", p.design.position[: TRACK_POINTS + 1]))
     elif start.kind in ("circular", "elements"):
         e = orbital.elements(p.position, p.velocity, p.body.mu)
         if e.eccentricity < 1:

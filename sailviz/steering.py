@@ -50,21 +50,56 @@ def meridian_direction(ux, uy, uz, n_r, n_east, n_north):
     return n_r * ux + n_east * ex + n_north * px, n_r * uy + n_east * ey + n_north * py, n_r * uz + n_north * pz
 
 
+LINEAR, HOLD, CUBIC = 0, 1, 2  # how a steering table is read between its rows
+INTERPOLATIONS = {"linear": LINEAR, "hold": HOLD, "cubic": CUBIC}
+COLUMNS = 7  # of a steering table: time s, pitch rad, clock rad, throttle, and the rates of the last three
+
+
 @inlined
-def table_angles(t, p, first, held):
-    """Pitch and clock, rad, at time t from the rows (time, pitch, clock) that fill p from place `first` on: linear between
-    rows, or held from row to row."""
-    low, high = 0, (len(p) - first) // 3 - 1
-    if t <= p[first]:
-        return p[first + 1], p[first + 2]
-    if t >= p[first + 3 * high]:
-        return p[first + 3 * high + 1], p[first + 3 * high + 2]
+def _between(p, a, b, column, w, span, interpolation):
+    """Value of a column between the rows that begin at p[a] and p[b], at the fraction w of their span in s."""
+    low, high = p[a + column], p[b + column]
+    if interpolation != CUBIC:
+        return low + w * (high - low)
+    m0, m1 = span * p[a + column + 3], span * p[b + column + 3]  # Hermite's cubic through values and rates
+    return low + w * (m0 + w * (3.0 * (high - low) - 2.0 * m0 - m1 + w * (2.0 * (low - high) + m0 + m1)))
+
+
+@inlined
+def table_row(t, p, first, interpolation):
+    """Pitch rad, clock rad and throttle at time t s from the rows of COLUMNS numbers that fill p from place `first` on; the
+    first and the last row hold before and after."""
+    low, high = 0, (len(p) - first) // COLUMNS - 1
+    t = min(max(t, p[first]), p[first + COLUMNS * high])
     while high - low > 1:
         middle = (low + high) // 2
-        if p[first + 3 * middle] <= t:
+        if p[first + COLUMNS * middle] <= t:
             low = middle
         else:
             high = middle
-    a, b = first + 3 * low, first + 3 * high
-    w = 0.0 if held else (t - p[a]) / (p[b] - p[a])
-    return p[a + 1] + w * (p[b + 1] - p[a + 1]), p[a + 2] + w * (p[b + 2] - p[a + 2])
+    a, b = first + COLUMNS * low, first + COLUMNS * high
+    span = p[b] - p[a]
+    w = 0.0 if span == 0.0 else (t - p[a]) / span
+    if interpolation == HOLD:
+        w = 1.0 if w >= 1.0 else 0.0
+    return (
+        _between(p, a, b, 1, w, span, interpolation),
+        _between(p, a, b, 2, w, span, interpolation),
+        _between(p, a, b, 3, w, span, interpolation),
+    )
+
+
+def table(time, pitch, clock, throttle=None, interpolation="linear"):
+    """Rows (n, COLUMNS) of a steering table from columns (n,): s, rad, rad, and the share of full thrust (1).
+
+    interpolation : "linear", "hold", or "cubic", a spline through the rows with continuous rates; SciPy's not-a-knot spline.
+    """
+    time = np.asarray(time, dtype=float)
+    columns = [np.asarray(pitch, float), np.asarray(clock, float), np.ones_like(time) if throttle is None else throttle]
+    values = np.column_stack([time, *columns])
+    rates = np.zeros((len(time), 3))
+    if interpolation == "cubic":
+        from scipy.interpolate import CubicSpline
+
+        rates = CubicSpline(time, values[:, 1:]).derivative()(time)
+    return np.hstack([values, rates])

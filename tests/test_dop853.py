@@ -188,12 +188,16 @@ def test_steps_land_on_every_redraw(fly):
 
 def test_held_table_turns_exactly_at_its_rows(fly):
     """A thruster that points along +z, then along -z: no step may see both rows of the table."""
-    table = np.array([[0.0, np.pi / 2, 0.0], [4.0, np.pi / 2, np.pi], [6.0, np.pi / 2, 0.0]])
+    table = law.table([0.0, 4.0, 6.0], [np.pi / 2] * 3, [0.0, np.pi, 0.0])
     arguments = {
         "device": dynamics.THRUSTER, "device_parameters": (0.01, 0, 0), "steering": law.TABLE_ORBITAL, "table": table
     }  # fmt: skip
     flight = fly(
-        dynamics.model(1.0, held=True, **arguments), *perihelion(0.2), [9.0], breaks=[0, 4, 6], factors=[1, 1, 1]
+        dynamics.model(1.0, interpolation=law.HOLD, **arguments),
+        *perihelion(0.2),
+        [9.0],
+        breaks=[0, 4, 6],
+        factors=[1, 1, 1],
     )
     assert dop853.statistics(flight.integration)[1] == 0
     y, begin = np.concatenate(perihelion(0.2)), 0.0

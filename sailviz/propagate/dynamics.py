@@ -33,8 +33,9 @@ STEERING = 4  # three numbers of the steering law
 DEVICE = 8  # up to five numbers of the device
 PLASMA = 14  # profile, reference altitude m, value (N/m or 1/m3), scale height m, ion mass kg, sphere radius m
 USER_STEERING, USER_FORCE = 20, 21  # addresses of C functions, 0 for none; exact, since addresses stay below 2^53
-HELD = 22  # steering table: 1 holds each row, 0 interpolates
-TABLE = 24
+INTERPOLATION = 22  # of the steering table
+THIRD_BODY = 24  # mu m3/s2 (0 for none), radius m, angular rate rad/s and initial azimuth rad of its circular orbit
+TABLE = 28
 
 
 class Model(NamedTuple):
@@ -42,7 +43,7 @@ class Model(NamedTuple):
 
     device: int
     steering: int
-    parameters: np.ndarray  # (TABLE + 3 k,), the steering table's k rows of (time s, pitch rad, clock rad) at its end
+    parameters: np.ndarray  # (TABLE + 7 k,), the k rows of the steering table at its end
 
 
 def model(
@@ -52,22 +53,24 @@ def model(
     device_parameters=(),
     steering=law.RADIAL,
     steering_parameters=(),
-    held=False,
+    interpolation=law.LINEAR,
     table=None,
     j2_strength=0.0,
     surface_radius=0.0,
     rotation=0.0,
     plasma=(),
+    third_body=(),
     user_steering=0,
     user_force=0,
 ) -> Model:
-    """A Model from its parts. mu m3/s2, j2_strength m5/s2, surface_radius m, rotation rad/s about +z; the parameter tuples are
-    those of the branches in `direction` and `device_acceleration`."""
+    """A Model from its parts. mu m3/s2, j2_strength m5/s2, surface_radius m, rotation rad/s about +z; table (k, 7) of
+    `steering.table`; the parameter tuples are those of the branches in `direction` and `device_acceleration`."""
     row = np.zeros(TABLE)
     row[MU], row[J2_STRENGTH], row[SURFACE_RADIUS], row[ROTATION] = mu, j2_strength, surface_radius, rotation
-    for start, values in ((STEERING, steering_parameters), (DEVICE, device_parameters), (PLASMA, plasma)):
+    parts = ((STEERING, steering_parameters), (DEVICE, device_parameters), (PLASMA, plasma), (THIRD_BODY, third_body))
+    for start, values in parts:
         row[start : start + len(values)] = values
-    row[USER_STEERING], row[USER_FORCE], row[HELD] = user_steering, user_force, held
+    row[USER_STEERING], row[USER_FORCE], row[INTERPOLATION] = user_steering, user_force, interpolation
     if table is not None:
         row = np.concatenate([row, np.asarray(table, dtype=float).ravel()])
     return Model(int(device), int(steering), row)
@@ -145,7 +148,7 @@ def direction(t, x, y, z, vx, vy, vz, m, ux, uy, uz, model):
         inverse = 1.0 / np.sqrt(vx * vx + vy * vy + vz * vz)
         return vx * inverse, vy * inverse, vz * inverse
     if kind == law.TABLE_ORBITAL or kind == law.TABLE_MERIDIAN:
-        alpha, delta = law.table_angles(t, p, TABLE, p[HELD] > 0.5)
+        alpha, delta, _ = law.table_row(t, p, TABLE, p[INTERPOLATION])
         n_r, n_t, n_h = np.cos(alpha), np.sin(alpha) * np.sin(delta), np.sin(alpha) * np.cos(delta)
         if kind == law.TABLE_MERIDIAN:
             return law.meridian_direction(ux, uy, uz, n_r, n_t, n_h)
@@ -175,24 +178,41 @@ def brake_force(x, y, z, vx, vy, vz, r, sx, sy, sz, model):
 
 
 @inlined
-def device_acceleration(t, x, y, z, vx, vy, vz, m, inverse, model):
-    """Acceleration of the device at full thrust, m/s2 inertial, and m_dot, kg/s. inverse = 1 / |position|."""
+def device_acceleration(t, x, y, z, vx, vy, vz, m, inverse, factor, model):
+    """Acceleration of the device, m/s2 inertial, and m_dot, kg/s. inverse = 1 / |position|; factor multiplies both, and so
+    does the throttle of a steering table."""
     p = model.parameters
+    if model.steering == law.TABLE_ORBITAL or model.steering == law.TABLE_MERIDIAN:
+        factor = factor * law.table_row(t, p, TABLE, p[INTERPOLATION])[2]
     ux, uy, uz = x * inverse, y * inverse, z * inverse
     nx, ny, nz = direction(t, x, y, z, vx, vy, vz, m, ux, uy, uz, model)
     kind = model.device
     if kind == SOLAR_SAIL:
         ax, ay, az = sail_force(
-            ux, uy, uz, inverse, nx, ny, nz, p[DEVICE], p[DEVICE + 1], p[DEVICE + 2], p[DEVICE + 3]
+            ux, uy, uz, inverse, nx, ny, nz, factor * p[DEVICE], p[DEVICE + 1], p[DEVICE + 2], p[DEVICE + 3]
         )
         return ax, ay, az, 0.0
     if kind == ELECTRIC_SAIL:
-        ax, ay, az = esail_force(ux, uy, uz, inverse, nx, ny, nz, p[DEVICE], int(p[DEVICE + 1]), p[DEVICE + 2])
+        ax, ay, az = esail_force(
+            ux, uy, uz, inverse, nx, ny, nz, factor * p[DEVICE], int(p[DEVICE + 1]), p[DEVICE + 2]
+        )
         return ax, ay, az, 0.0
     if kind == PLASMA_BRAKE:
         fx, fy, fz, _ = brake_force(x, y, z, vx, vy, vz, 1.0 / inverse, nx, ny, nz, model)
-        return fx / m, fy / m, fz / m, 0.0
-    return thruster_force(nx, ny, nz, m, p[DEVICE], p[DEVICE + 1], p[DEVICE + 2])
+        k = factor / m
+        return k * fx, k * fy, k * fz, 0.0
+    return thruster_force(nx, ny, nz, m, factor * p[DEVICE], p[DEVICE + 1], p[DEVICE + 2])
+
+
+@inlined
+def third_body_gravity(t, x, y, z, p):
+    """Pull of a body on a circular orbit in the x-y plane, m/s2, the central body held fixed: the fall of the central body
+    towards the other, mu' / R'^2, is neglected (3e-6 of the Sun's pull for the Earth)."""
+    angle = p[THIRD_BODY + 3] + p[THIRD_BODY + 2] * t
+    dx, dy = p[THIRD_BODY + 1] * np.cos(angle) - x, p[THIRD_BODY + 1] * np.sin(angle) - y
+    d2 = dx * dx + dy * dy + z * z
+    k = p[THIRD_BODY] / (d2 * np.sqrt(d2))
+    return k * dx, k * dy, -k * z
 
 
 @called
@@ -203,9 +223,12 @@ def derivative(t, y, factor, model, out):
     inverse = 1.0 / np.sqrt(x * x + yy * yy + z * z)
     ax, ay, az = gravity(x, yy, z, inverse, p[MU], p[J2_STRENGTH])
     m_dot = 0.0
+    if p[THIRD_BODY] != 0.0:
+        bx, by, bz = third_body_gravity(t, x, yy, z, p)
+        ax, ay, az = ax + bx, ay + by, az + bz
     if factor != 0.0 and model.device != NO_DEVICE:
-        bx, by, bz, m_dot = device_acceleration(t, x, yy, z, vx, vy, vz, m, inverse, model)
-        ax, ay, az, m_dot = ax + factor * bx, ay + factor * by, az + factor * bz, factor * m_dot
+        bx, by, bz, m_dot = device_acceleration(t, x, yy, z, vx, vy, vz, m, inverse, factor, model)
+        ax, ay, az = ax + bx, ay + by, az + bz
     if p[USER_FORCE] != 0.0:
         bx, by, bz = user_vector(int(p[USER_FORCE]), t, x, yy, z, vx, vy, vz, m)
         ax, ay, az = ax + bx, ay + by, az + bz
@@ -228,8 +251,7 @@ def observe(time, states, factor, model):
         normal[i, 0], normal[i, 1], normal[i, 2] = nx, ny, nz
         ax, ay, az = 0.0, 0.0, 0.0
         if factor[i] != 0.0 and model.device != NO_DEVICE:
-            ax, ay, az, _ = device_acceleration(t, x, y, z, vx, vy, vz, m, 1.0 / r, model)
-            ax, ay, az = factor[i] * ax, factor[i] * ay, factor[i] * az
+            ax, ay, az, _ = device_acceleration(t, x, y, z, vx, vy, vz, m, 1.0 / r, factor[i], model)
             if model.device == PLASMA_BRAKE:
                 per_length[i] = factor[i] * brake_force(x, y, z, vx, vy, vz, r, nx, ny, nz, model)[3]
         if p[USER_FORCE] != 0.0:

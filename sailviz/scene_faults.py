@@ -182,7 +182,10 @@ def _hint(key, allowed) -> str:
 
 # ---------------------------------------------------------------- what pydantic found -> sentences
 def _shown(value) -> str:
-    text = repr(value) if not isinstance(value, str) else f'"{value}"'
+    try:
+        text = repr(value) if not isinstance(value, str) else f'"{value}"'
+    except ValueError:  # Python writes no number of more than 4300 digits
+        return "a number of thousands of digits"
     return text if len(text) <= 60 else text[:57] + "..."
 
 
@@ -212,8 +215,11 @@ def _sentence(error, written: _Written) -> str:
     if kind in _LIMITS:
         words, key = _LIMITS[kind]
         limit = context[key] / written.factor
-        got = value / written.factor if _is_number(value) else value
-        return f"must be {words} {limit:.6g}{' ' + written.unit if written.unit else ''}, is {got:.6g}."
+        try:
+            got = f"{value / written.factor:.6g}"
+        except OverflowError:  # a whole number beyond the range of float
+            got = _shown(value)
+        return f"must be {words} {limit:.6g}{' ' + written.unit if written.unit else ''}, is {got}."
     if kind in _TYPE_WORDS:
         return f"must be {_TYPE_WORDS[kind]}, is {_shown(value)}."
     if kind == "literal_error":
@@ -242,7 +248,8 @@ def faults_of(errors, places: Places | None = None, model=None) -> list[Fault]:
         if error["type"] in _FOUND_BEFORE or places.passed_over & set(error["loc"]):
             continue
         path, written = _place(error, places)
-        if error["type"] == "literal_error" and isinstance(error["input"], dict):
+        among_others = str(error["loc"][-1]).startswith("literal[")
+        if error["type"] == "literal_error" and among_others and isinstance(error["input"], dict):
             continue  # a table where a word was also allowed: what is wrong with the table is said elsewhere
         if error["type"] == "missing":
             dimension = quantities.get(error["loc"][-1])
@@ -297,6 +304,11 @@ def _place(error, places: Places) -> tuple[str, _Written]:
     return written.lstrip("."), known
 
 
+def _parent(path: str) -> str:
+    """The place that holds a place; always shorter, whatever characters a key is made of."""
+    return path[: max(path.rfind("."), path.rfind("["), 0)]
+
+
 def locate(faults: list[Fault], text: str) -> list[Fault]:
     """Faults without repetition, with line numbers where the text of the file tells them."""
     lines = _lines(text)
@@ -308,7 +320,7 @@ def locate(faults: list[Fault], text: str) -> list[Fault]:
         where = fault.where
         line = lines.get(where)
         while line is None and where:
-            where = re.sub(r"(\.[^.\[\]]+|\[\d+\]|^[^.\[\]]+)$", "", where)
+            where = _parent(where)
             line = lines.get(where) if where else None
         fault = replace(fault, line=line)
         if fault not in found:

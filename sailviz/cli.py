@@ -9,18 +9,22 @@ from __future__ import annotations
 import json
 import os
 import sys
-import tomllib
-from contextlib import contextmanager
 from pathlib import Path
 
 import click
 
 from sailviz.cli_recordings import COMMANDS
-from sailviz.errors import PropagationError, RecordingError, SceneError
+from sailviz.cli_shared import (
+    EXPECTATION_FAILED,
+    collecting_failures,
+    progress_bar,
+    say_if_compiling,
+    set_option,
+    values_of,
+)
+from sailviz.errors import PropagationError, RecordingError
 from sailviz.scene import load_scene, schema
 from sailviz.shipped import shipped_scenes
-
-EXPECTATION_FAILED, BAD_INPUT, RUN_FAILED, INTERRUPTED = 1, 2, 3, 130
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})
@@ -33,23 +37,6 @@ for _command in COMMANDS:
     main.add_command(_command)
 
 
-def _values(settings) -> dict:
-    """KEY=VALUE pairs; the value is read as TOML, or taken as text where it is not."""
-    values = {}
-    for setting in settings:
-        key, equals, text = setting.partition("=")
-        if not equals or not key.strip():
-            raise click.BadParameter(f"{setting!r} is not KEY=VALUE", param_hint="--set")
-        try:
-            values[key.strip()] = tomllib.loads(f"value = {text}")["value"]
-        except tomllib.TOMLDecodeError:
-            values[key.strip()] = text.strip()
-    return values
-
-
-set_option = click.option(
-    "--set", "settings", multiple=True, metavar="KEY=VALUE", help="Put a value over the scene's, e.g. propagation.duration_yr=1."
-)
 scenes_argument = click.argument("scenes", nargs=-1, required=True, metavar="SCENE...")
 
 
@@ -65,10 +52,10 @@ def list_scenes():
 @set_option
 def check(scenes, settings):
     """Read scenes and report every fault in them."""
-    with _failures() as failures:
+    with collecting_failures() as failures:
         for name in scenes:
             with failures.next():
-                scene = load_scene(name, _values(settings))
+                scene = load_scene(name, values_of(settings))
                 click.echo(f"{name}: ok, {scene.title}")
 
 
@@ -79,8 +66,8 @@ def show(scene, settings):
     """Print every value of a scene, defaults included, in SI and in words."""
     from sailviz.describe import resolved_lines
 
-    with _failures() as failures, failures.next():
-        for line in resolved_lines(load_scene(scene, _values(settings))):
+    with collecting_failures() as failures, failures.next():
+        for line in resolved_lines(load_scene(scene, values_of(settings))):
             click.echo(line)
 
 
@@ -93,10 +80,14 @@ def print_schema():
 @main.command()
 @scenes_argument
 @set_option
-@click.option("-o", "--output", metavar="FILE|DIR", help="Recording to write, or folder for several; - for standard output.")
+@click.option(
+    "-o", "--output", metavar="FILE|DIR", help="Recording to write, or folder for several; - for standard output."
+)
 @click.option("--view", is_flag=True, help="Watch in the native viewer while it is computed.")
 @click.option("--web", is_flag=True, help="Serve it to a browser on this machine; works offline.")
-@click.option("--connect", metavar="URL", help="Send it to a viewer that runs already, e.g. rerun+http://host:9876/proxy.")
+@click.option(
+    "--connect", metavar="URL", help="Send it to a viewer that runs already, e.g. rerun+http://host:9876/proxy."
+)
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
 @click.option("--json", "as_json", is_flag=True, help="Print a summary that a script can read.")
 def run(scenes, settings, output, view, web, connect, quiet, as_json):
@@ -112,10 +103,10 @@ def run(scenes, settings, output, view, web, connect, quiet, as_json):
     if len(scenes) > 1 and output and Path(output).suffix:
         raise click.UsageError("-o names one file, but there are several scenes: give a folder.")
     quiet = quiet or as_json or output == "-"
-    with _failures(as_json) as failures:
+    with collecting_failures(as_json) as failures:
         for name in scenes:
             with failures.next(name):
-                _run_one(name, _values(settings), _sinks(name, output, view, web, connect), quiet, failures)
+                _run_one(name, values_of(settings), _sinks(name, output, view, web, connect), quiet, failures)
 
 
 def _sinks(name, output, view, web, connect) -> list:
@@ -155,14 +146,11 @@ def _open(sinks):
 def _run_one(name, values, sinks, quiet, failures):
     scene = load_scene(name, values)
     from sailviz.expectations import Judge
-    from sailviz.propagate.dop853 import advance
-    from sailviz.compiled import is_compiled
     from sailviz.simulation import simulate_blocks
 
-    if not quiet and not is_compiled(advance):
-        click.echo("Compiling the propagator for this machine: once, about 20 s.", err=True)
+    say_if_compiling(quiet)
     judge = Judge(scene)
-    with _progress(scene.title, quiet) as progress:
+    with progress_bar(scene.title, quiet) as progress:
         blocks = simulate_blocks(scene, progress=progress)
         first = next(blocks)  # an infeasible scene fails here, before a recording is begun
         from sailviz.recording import Recorder
@@ -239,62 +227,6 @@ def _say_unfinished(recorder, seconds):
 
     for path in recorder.recorded.paths if recorder.recorded else ():
         click.echo(f"Unfinished: {path} is valid up to {duration(seconds)} and says so.", err=True)
-
-
-@contextmanager
-def _progress(title, quiet):
-    """A bar for work longer than a second, silent when not on a terminal."""
-    if quiet or not sys.stderr.isatty():
-        yield None
-        return
-    from tqdm import tqdm
-
-    with tqdm(total=1.0, desc=title[:40], delay=1, leave=False, bar_format="{l_bar}{bar}| {elapsed}<{remaining}") as bar:
-        yield lambda fraction: bar.update(fraction - bar.n)
-
-
-class _Failures:
-    """Collects what went wrong over several scenes, so that one bad scene does not hide the others."""
-
-    def __init__(self, as_json):
-        self.code = 0
-        self.as_json = as_json
-        self.summaries = []
-
-    def worst(self, code):
-        self.code = max(self.code, code)
-
-    def summary(self, values):
-        self.summaries.append(values)
-
-    @contextmanager
-    def next(self, name=""):
-        try:
-            yield
-        except SceneError as error:
-            self._tell(name, error, BAD_INPUT)
-        except (PropagationError, RecordingError) as error:
-            self._tell(name, error, RUN_FAILED if isinstance(error, PropagationError) else BAD_INPUT)
-
-    def _tell(self, name, error, code):
-        self.worst(code)
-        if self.as_json:
-            self.summaries.append({"scene": name, "error": str(error)})
-        click.echo(f"{name}: {error}" if isinstance(error, PropagationError) else str(error), err=True)
-
-
-@contextmanager
-def _failures(as_json=False):
-    failures = _Failures(as_json)
-    try:
-        yield failures
-    except KeyboardInterrupt:
-        click.echo("Interrupted.", err=True)
-        failures.worst(INTERRUPTED)
-    if as_json:
-        click.echo(json.dumps(failures.summaries, indent=2))
-    if failures.code:
-        sys.exit(failures.code)
 
 
 if __name__ == "__main__":

@@ -1,0 +1,107 @@
+"""What commands share: settings as KEY=VALUE, a progress bar, and exit codes.
+
+0 all went well, 1 an expectation or a picture failed, 2 bad input, 3 the propagation failed, 130 interrupted.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+import tomllib
+from contextlib import contextmanager
+
+import click
+
+from sailviz.errors import PropagationError, RecordingError, SceneError
+
+EXPECTATION_FAILED, BAD_INPUT, RUN_FAILED, INTERRUPTED = 1, 2, 3, 130
+
+
+def values_of(settings) -> dict:
+    """KEY=VALUE pairs; the value is read as TOML, or taken as text where it is not."""
+    values = {}
+    for setting in settings:
+        key, equals, text = setting.partition("=")
+        if not equals or not key.strip():
+            raise click.BadParameter(f"{setting!r} is not KEY=VALUE", param_hint="--set")
+        try:
+            values[key.strip()] = tomllib.loads(f"value = {text}")["value"]
+        except tomllib.TOMLDecodeError:
+            values[key.strip()] = text.strip()
+    return values
+
+
+set_option = click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Put a value over the scene's, e.g. propagation.duration_yr=1.",
+)
+
+
+def say_if_compiling(quiet: bool) -> None:
+    """Tell a person why the first run takes so long."""
+    from sailviz.compiled import is_compiled
+    from sailviz.propagate.dop853 import advance
+
+    if not quiet and not is_compiled(advance):
+        click.echo("Compiling the propagator for this machine: once, about 20 s.", err=True)
+
+
+@contextmanager
+def progress_bar(title, quiet):
+    """A bar for work longer than a second, silent when not on a terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from tqdm import tqdm
+
+    with tqdm(
+        total=1.0, desc=title[:40], delay=1, leave=False, bar_format="{l_bar}{bar}| {elapsed}<{remaining}"
+    ) as bar:
+        yield lambda fraction: bar.update(fraction - bar.n)
+
+
+class Failures:
+    """Collects what went wrong over several scenes, so that one bad scene does not hide the others."""
+
+    def __init__(self, as_json):
+        self.code = 0
+        self.as_json = as_json
+        self.summaries = []
+
+    def worst(self, code):
+        self.code = max(self.code, code)
+
+    def summary(self, values):
+        self.summaries.append(values)
+
+    @contextmanager
+    def next(self, name=""):
+        try:
+            yield
+        except SceneError as error:
+            self._tell(name, error, BAD_INPUT)
+        except (PropagationError, RecordingError) as error:
+            self._tell(name, error, RUN_FAILED if isinstance(error, PropagationError) else BAD_INPUT)
+
+    def _tell(self, name, error, code):
+        self.worst(code)
+        if self.as_json:
+            self.summaries.append({"scene": name, "error": str(error)})
+        click.echo(f"{name}: {error}" if isinstance(error, PropagationError) else str(error), err=True)
+
+
+@contextmanager
+def collecting_failures(as_json=False):
+    failures = Failures(as_json)
+    try:
+        yield failures
+    except KeyboardInterrupt:
+        click.echo("Interrupted.", err=True)
+        failures.worst(INTERRUPTED)
+    if as_json:
+        click.echo(json.dumps(failures.summaries, indent=2))
+    if failures.code:
+        sys.exit(failures.code)

@@ -68,6 +68,13 @@ def pitch_and_cone(run: Run) -> np.ndarray:
     return degrees(run.attitude.pitch, np.where(run.thrust.magnitude > 0, run.attitude.cone, np.nan))
 
 
+def clock_about(start: float):
+    """The clock angle in the turn about 0 or in that about 180 deg, whichever its first value is nearer to: an angle that
+    sways about 0 must not jump by 360."""
+    low = 0.0 if np.cos(start) < 0 else -np.pi
+    return lambda run: degrees(np.mod(run.attitude.clock - low, 2 * np.pi) + low)
+
+
 def plots_of(first: Run, frame: Frame) -> list[Plot]:
     """All curves that are written of a run; the layout shows those that say something."""
     unit, name = thrust_units(first)
@@ -103,7 +110,7 @@ def plots_of(first: Run, frame: Frame) -> list[Plot]:
             "Clock angle [deg]",
             ("clock",),
             (look.CLOCK,),
-            lambda run: degrees(run.attitude.clock),
+            clock_about(first.attitude.clock[0]),
             noise=1e-3,
         ),
         Plot(

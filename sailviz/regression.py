@@ -160,7 +160,7 @@ def _defaults(data: Evidence) -> dict[str, float]:
 
 def _number(value: float) -> str:
     text = f"{value:g}"
-    return text if any(c in text for c in ".e") else f"{text}.0"
+    return text if any(c in text for c in ".en") else f"{text}.0"  # n: inf and nan are TOML as they are
 
 
 def _pictures(folder: Path) -> str:

@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq
 
 from sailviz.expectations import check
@@ -95,7 +96,7 @@ def schedule(scene):
         raise NotImplementedError(wind.kind)
     active = scene.device.active
     kinks += [t for pair in active or [] for t in pair]
-    kinks += scene.steering.time if scene.steering and scene.steering.kind == "table" else []
+    kinks += scene.steering.time if getattr(scene.steering, "interpolation", "cubic") != "cubic" else []
     breaks = np.array(sorted({t for t in kinks if 0 <= t < duration}))
     factors = []
     for t in breaks:
@@ -116,9 +117,12 @@ def right_hand_side(scene, acceleration, factor, latest):
             s = (r[2] / size) ** 2
             a = a - 1.5 * J2 * mu * RADIUS_EARTH**2 / size**5 * r * np.array([1 - 5 * s, 1 - 5 * s, 3 - 5 * s])
         rate = 0.0
+        a = a + third_body(scene, t, r)
         if factor and acceleration is not None:
+            throttle = getattr(scene.steering, "throttle", None)
+            share = factor * (table(scene.steering, throttle, min(t, latest)) if throttle else 1.0)
             push, rate = acceleration(min(t, latest), r, v, mass)
-            a, rate = a + factor * push, factor * rate
+            a, rate = a + share * push, share * rate
         return np.concatenate([v, a, [rate]])
 
     return rhs
@@ -138,14 +142,12 @@ def normal(scene, t, r, v):
     if kind == "circumferential":
         pitch, clock = np.pi / 2, np.pi / 2
     elif kind == "as designed":
-        pitch, clock = designed(scene)[0], 0.0 if scene.start.elevation >= 0 else np.pi
+        pitch, clock, _ = designed(scene, t)
+        if pitch == 0:  # along the Sun line: no plane of motion is needed, and there may be none
+            return r_hat
     elif kind == "table":
         frame = steering.frame
-        if steering.interpolation == "hold":
-            row = max(0, np.searchsorted(steering.time, t, side="right") - 1)
-            pitch, clock = steering.pitch[row], steering.clock[row]
-        else:
-            pitch, clock = (np.interp(t, steering.time, column) for column in (steering.pitch, steering.clock))
+        pitch, clock = (table(steering, column, t) for column in (steering.pitch, steering.clock))
     elif kind in ("orbital", "meridian"):
         frame, pitch, clock = kind, steering.pitch, steering.clock
     else:
@@ -154,6 +156,15 @@ def normal(scene, t, r, v):
     up = up / np.linalg.norm(up)
     along = np.cross(up, r_hat)
     return np.cos(pitch) * r_hat + np.sin(pitch) * (np.sin(clock) * along + np.cos(clock) * up)
+
+
+def table(steering, column, t):
+    """Value of a column of a steering table at time t; the first and the last row hold before and after."""
+    times = np.array(steering.time)
+    t = np.clip(t, times[0], times[-1])
+    if steering.interpolation == "hold":
+        return column[np.searchsorted(times, t, side="right") - 1]
+    return np.interp(t, times, column) if steering.interpolation == "linear" else CubicSpline(times, column)(t)
 
 
 def film_of(device):
@@ -174,25 +185,113 @@ def film_force(film, cosine):
     return cosine * b1 / total, cosine * (b2 * cosine + b3) / total
 
 
-def designed(scene):
-    """(pitch, characteristic acceleration) that hold a displaced orbit, (4.2)-(4.5)."""
-    start, psi = scene.start, abs(scene.start.elevation)
-    w = start.rate_ratio**2
-    out, up = 1 - w * np.cos(psi) ** 2, w * np.sin(psi) * np.cos(psi)
-    g = MU_SUN / start.radius**2
-    if scene.device.kind == "electric-sail":
-        # (3.39): the thrust is r_hat + cos(alpha) n_hat, so tan(cone) = sin(alpha) cos(alpha) / (1 + cos^2(alpha))
-        pitch = brentq(
-            lambda x: np.sin(x) * np.cos(x) * out - up * (1 + np.cos(x) ** 2), 0, np.arccos(3**-0.5), xtol=1e-15
-        )
-        return pitch, g * np.hypot(out, up) * start.radius / AU / (np.sqrt(1 + 3 * np.cos(pitch) ** 2) / 2)
+PLANETS = {  # semi-major axis au and eccentricity at J2000: Standish, JPL
+    "mercury": (0.38709927, 0.20563593),
+    "venus": (0.72333566, 0.00677672),
+    "earth": (1.00000261, 0.01671123),
+    "mars": (1.52371034, 0.09339410),
+    "jupiter": (5.20288700, 0.04838624),
+}
 
-    def across(x):
-        light, along = film_force(film_of(scene.device), np.cos(x))
-        return along * np.sin(x), light + along * np.cos(x)
 
-    pitch = brentq(lambda x: across(x)[0] * out - up * across(x)[1], 0, np.radians(54), xtol=1e-15)
-    return pitch, g * (start.radius / AU) ** 2 * np.hypot(out, up) / np.hypot(*across(pitch))
+def held(scene, t):
+    """(position, velocity, thrust acceleration that holds it) on the designed orbit at time t."""
+    start = scene.start
+    if start.kind == "displaced" or start.kind == "heliostationary":
+        ratio = start.rate_ratio if start.kind == "displaced" else 0.0
+        rate, azimuth = ratio * np.sqrt(MU_SUN / start.radius**3), start.azimuth
+        rho, z = start.radius * np.cos(start.elevation), start.radius * np.sin(start.elevation)
+        r, v, a = circling(rho, z, rate, azimuth + rate * t)
+    elif start.kind == "lagrange-point":
+        third = scene.environment.third_body
+        radius, azimuth = (third.radius, third.azimuth) if third else (AU, 0.0)
+        rate = np.sqrt(MU_SUN / radius**3)
+        r, v, a = circling(start.radius, 0.0, rate, azimuth + rate * t)
+        a = a - third_body(scene, t, r)
+    elif start.kind == "planet-following":
+        # r = k times the planet's ellipse, at the planet's longitude and a fixed elevation
+        a, e = PLANETS[start.planet] if start.planet else (start.semi_major_axis / AU, start.eccentricity)
+        x, dx, ddx = ellipse(a * AU, e, MU_SUN, start.true_anomaly, t)
+        up = np.array([0, 0, np.tan(start.elevation)])
+        k = start.radius_ratio * np.cos(start.elevation)
+        size = np.linalg.norm(x)
+        speed = x @ dx / size
+        bend = (dx @ dx + x @ ddx - speed**2) / size
+        r, v, a = k * (x + size * up), k * (dx + speed * up), k * (ddx + bend * up)
+    elif start.kind == "flat-ellipse":
+        e = start.eccentricity
+        r, v, a = ellipse(start.semi_latus_rectum / (1 - e * e), e, start.mu_ratio * MU_SUN, start.true_anomaly, t)
+        r = r + np.array([0, 0, start.height])
+    else:
+        raise NotImplementedError(start.kind)
+    return r, v, a + MU_SUN * r / np.linalg.norm(r) ** 3
+
+
+def circling(rho, z, rate, angle):
+    """Position, velocity and acceleration on a circle about the z axis."""
+    out, along = np.array([np.cos(angle), np.sin(angle), 0]), np.array([-np.sin(angle), np.cos(angle), 0])
+    return rho * out + np.array([0, 0, z]), rate * rho * along, -(rate**2) * rho * out
+
+
+def ellipse(a, e, mu, true_anomaly, t):
+    """Position, velocity and acceleration on a Keplerian ellipse in the x-y plane, perihelion on the x axis."""
+    half = np.tan(true_anomaly / 2) * np.sqrt((1 - e) / (1 + e))
+    begin = 2 * np.arctan(half)
+    mean = begin - e * np.sin(begin) + np.sqrt(mu / a**3) * t
+    anomaly = brentq(lambda x: x - e * np.sin(x) - mean, mean - 1, mean + 1, xtol=1e-15, rtol=1e-15)
+    shape = np.sqrt(1 - e * e)
+    r = a * np.array([np.cos(anomaly) - e, shape * np.sin(anomaly), 0])
+    rate = np.sqrt(mu / a**3) / (1 - e * np.cos(anomaly))
+    v = a * rate * np.array([-np.sin(anomaly), shape * np.cos(anomaly), 0])
+    return r, v, -mu * r / np.linalg.norm(r) ** 3
+
+
+def third_body(scene, t, r):
+    """Pull of a planet on a circular orbit in the ecliptic."""
+    third = scene.environment.third_body
+    if third is None:
+        return np.zeros(3)
+    angle = third.azimuth + np.sqrt(MU_SUN / third.radius**3) * t
+    d = third.radius * np.array([np.cos(angle), np.sin(angle), 0]) - r
+    return third.mu * d / np.linalg.norm(d) ** 3
+
+
+def designed(scene, t):
+    """(pitch, clock, characteristic acceleration) that hold the designed orbit at time t, by the force law alone."""
+    r, v, a = held(scene, t)
+    size, r_hat = np.linalg.norm(r), r / np.linalg.norm(r)
+    out, sideways = a @ r_hat, a - (a @ r_hat) * r_hat
+    across = np.linalg.norm(sideways)
+    law = esail_force if scene.device.kind == "electric-sail" else lambda x: film_components(scene.device, x)
+    most = np.arccos(3**-0.5) if scene.device.kind == "electric-sail" else np.radians(54)
+    pitch, clock = 0.0, 0.0
+    if across > 1e-12 * out:
+        pitch = brentq(lambda x: law(x)[1] * out - across * law(x)[0], 0, most, xtol=1e-15)
+        h = np.cross(r, v)
+        h = h / np.linalg.norm(h)
+        clock = np.arctan2(sideways @ np.cross(h, r_hat), sideways @ h)
+    return pitch, clock, np.linalg.norm(a) / np.hypot(*law(pitch)) * (size / AU) ** law(pitch).exponent
+
+
+class Force(tuple):
+    """(along the Sun line, across it) over the force facing the Sun; exponent of its decrease with distance."""
+
+    exponent = 2
+
+
+class ElectricForce(Force):
+    exponent = 1
+
+
+def esail_force(pitch):
+    """(3.39): half of r_hat + cos(alpha) n_hat."""
+    c, s = np.cos(pitch), np.sin(pitch)
+    return ElectricForce(((1 + c * c) / 2, s * c / 2))
+
+
+def film_components(craft, pitch):
+    light, along = film_force(film_of(craft), np.cos(pitch))
+    return Force((light + along * np.cos(pitch), along * np.sin(pitch)))
 
 
 def device(scene):
@@ -205,10 +304,9 @@ def device(scene):
 
 def solar_sail(scene):
     craft, film = scene.device, film_of(scene.device)
-    if craft.characteristic_acceleration == "as designed":
-        ac = designed(scene)[1]
-    elif craft.characteristic_acceleration is not None:
-        ac = craft.characteristic_acceleration
+    ac = craft.characteristic_acceleration
+    if ac is not None:
+        pass
     elif craft.lightness_number is not None:
         ac = film[3] * craft.lightness_number * MU_SUN / AU**2
     else:
@@ -220,7 +318,8 @@ def solar_sail(scene):
         if cosine <= 0:
             return np.zeros(3), 0.0
         light, along = film_force(film, cosine)
-        return ac * (AU / size) ** 2 * (light * r / size + along * n), 0.0
+        ac_now = designed(scene, t)[2] if ac == "as designed" else ac
+        return ac_now * (AU / size) ** 2 * (light * r / size + along * n), 0.0
 
     return push
 
@@ -228,9 +327,7 @@ def solar_sail(scene):
 def electric_sail(scene):
     craft = scene.device
     ac = craft.characteristic_acceleration
-    if ac == "as designed":
-        ac = designed(scene)[1]
-    elif ac is None:
+    if ac is None:
         sigma = 0.18 * (craft.voltage - craft.wind_potential) * np.sqrt(EPSILON * craft.wind_pressure)  # (3.41)
         ac = craft.tethers * craft.tether_length * sigma / craft.mass
 
@@ -238,7 +335,8 @@ def electric_sail(scene):
         n, size = normal(scene, t, r, v), np.linalg.norm(r)
         r_hat = r / size
         if craft.model == "final":
-            return ac / 2 * (AU / size) * (r_hat + (r_hat @ n) * n), 0.0  # (3.39)
+            ac_now = designed(scene, t)[2] if ac == "as designed" else ac
+            return ac_now / 2 * (AU / size) * (r_hat + (r_hat @ n) * n), 0.0  # (3.39)
         n = n if n @ r_hat >= 0 else -n
         pitch = np.arccos(min(n @ r_hat, 1.0))
         cone, gamma, power = pitch / 2, 1.0, 7 / 6 if craft.model == "original" else 1.0

@@ -21,6 +21,8 @@ from sailviz.run import Run
 HEAD = """\
 # How far a run may differ from {name}.npz, column by column, each in its own unit.
 # Made with 1e-9 of the largest value; edit freely, --sailviz-update keeps what stands here.
+
+rtol = 0.0
 """
 
 
@@ -48,11 +50,13 @@ class Regression:
         data = evidence(self._run(source, values))
         self.baseline.parent.mkdir(parents=True, exist_ok=True)
         _atomic(self.baseline, lambda part: _write_npz(part, self._thinned(data), compressed=True))
-        kept = self._read_tolerances() if self.tolerances.exists() else {}
-        atol = {name: kept.get("atol", {}).get(name, value) for name, value in _defaults(data).items()}
-        lines = [HEAD.format(name=self.name), f"rtol = {_number(kept.get('rtol', 0.0))}", "", "[atol]"]
-        lines += [f'"{name}" = {_number(value)}' for name, value in atol.items()]
-        self.tolerances.write_text("\n".join([*lines, ""]))
+        kept = self._read_tolerances()
+        text = self.tolerances.read_text() if kept else HEAD.format(name=self.name)
+        if "atol" not in kept:
+            text += "\n[atol]\n"
+        missing = [(name, value) for name, value in _defaults(data).items() if name not in kept.get("atol", {})]
+        text += "".join(f'"{name}" = {_number(value)}\n' for name, value in missing)
+        self.tolerances.write_text(text)
 
     def check(self, source, values, leave_in: Callable[[], Path], pictures: bool = True) -> Outcome:
         """Compare a scene or run with the baseline; where they differ, leave everything that helps in a folder."""

@@ -37,7 +37,7 @@ class Reference:
     """A curve that is there from the start: a target orbit, an initial orbit, a planet's orbit. points : (k, 3) m."""
 
     name: str
-    role: str  # "target" | "initial" | "planet"
+    role: str  # "target" | "initial" | "planet" | "approximation"
     points: np.ndarray
 
 
@@ -111,11 +111,26 @@ class Run:
     elements: Elements
     environment: dict[str, np.ndarray]  # name with unit -> (n,), e.g. "thrust_factor", "plasma_force_N_m"
     bodies: dict[str, np.ndarray]  # name -> (n, 3) m from the central body, e.g. "Earth", or "Sun" seen from the Earth
+    approximations: dict[str, np.ndarray] = field(default_factory=dict)  # name -> (n, 3) m, another answer to the same
     events: tuple[Event, ...] = ()
     ended: str = field(default="")  # why a run stopped before its duration, "" if it did not
 
     def __len__(self) -> int:
         return len(self.time)
+
+
+COLUMNS = (  # fields of a Run that have a row for each time
+    "time",
+    "position",
+    "velocity",
+    "mass",
+    "attitude",
+    "thrust",
+    "elements",
+    "environment",
+    "bodies",
+    "approximations",
+)
 
 
 def join(blocks: list[Run]) -> Run:
@@ -130,7 +145,6 @@ def join(blocks: list[Run]) -> Run:
             return {key: stack([part[key] for part in parts]) for key in parts[0]}
         return type(parts[0])(*(stack([getattr(p, f.name) for p in parts]) for f in fields(parts[0])))
 
-    columns = ("time", "position", "velocity", "mass", "attitude", "thrust", "elements", "environment", "bodies")
     events = tuple(event for block in blocks for event in block.events)
-    joined = {name: stack([getattr(block, name) for block in blocks]) for name in columns}
+    joined = {name: stack([getattr(block, name) for block in blocks]) for name in COLUMNS}
     return replace(blocks[0], events=events, ended=blocks[-1].ended, **joined)

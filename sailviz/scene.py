@@ -465,6 +465,15 @@ class Watched(Section):
         return self
 
 
+class Approximation(Section):
+    """The first-order analytic solution, recorded beside the integrated trajectory."""
+
+    kind: Literal["first-order"]
+    name: str = "first order"
+    leg: Annotated[Angle, POSITIVE] | None = None
+    scheme: Literal["plain", "midpoint"] = "plain"
+
+
 class Recording(Section):
     """How the recording plays."""
 
@@ -508,6 +517,7 @@ class Scene(Section):
     environment: Environment = Environment()
     propagation: Propagation
     event: list[Watched] = []
+    approximation: list[Approximation] = []
     recording: Recording = Recording()
     expect: list[Expectation] = []
 
@@ -593,6 +603,10 @@ def _conflicts(scene: Scene) -> list[tuple[str, str]]:
             found.append(("steering.kind", 'a logarithmic spiral needs a fixed pitch: kind = "orbital"'))
         elif abs(abs(steering.clock) % 6.283185307179586 - 1.5707963267948966) > 1e-9:
             found.append(("steering.clock", "a logarithmic spiral is planar: clock_deg = 90 (negative pitch goes inwards)"))
+    if scene.approximation:
+        found += [("approximation[0]", sentence) for sentence in _beyond_first_order(scene)]
+        if len({item.name for item in scene.approximation}) < len(scene.approximation):
+            found.append(("approximation[1].name", "two approximations have the same name"))
     if start.kind == "circular" and start.altitude is not None and _body_radius(scene) == 0:
         found.append(("start.altitude", "the body has no radius to measure an altitude from"))
     if scene.environment.solar_wind.kind != "steady" and device.kind != "electric-sail":
@@ -620,6 +634,25 @@ def _conflicts(scene: Scene) -> list[tuple[str, str]]:
             found.append((f"expect[{i}].at", f'no such moment "{expected.at}". {nearest(expected.at, words)}'))
         if expected.at_time is not None and not 0 <= expected.at_time <= duration:
             found.append((f"expect[{i}].at_time", "outside the run"))
+    return found
+
+
+def _beyond_first_order(scene: Scene) -> list[str]:
+    """What keeps a scene from the first-order solution, which is planar and has one thrust law at fixed pitch."""
+    device, steering, found = scene.device, scene.steering, []
+    planar = scene.start.kind in ("circular", "elements") and scene.start.inclination == 0
+    if not planar:
+        found.append('the first-order solution is planar: start.kind "circular" or "elements" without inclination')
+    law = steering.kind if steering else "sun-facing"
+    sideways = law != "orbital" or abs(abs(steering.clock) % 3.141592653589793 - 1.5707963267948966) < 1e-9
+    if law not in ("orbital", "sun-facing", "radial", "circumferential") or not sideways:
+        found.append("the first-order solution needs a fixed pitch in the orbit plane, or radial or circumferential thrust")
+    if device.active is not None or scene.environment.solar_wind.kind != "steady" or device.kind == "plasma-brake":
+        found.append("the first-order solution needs thrust that is always on and never disturbed")
+    if device.kind == "electric-sail" and device.model != "final":
+        found.append('the first-order solution needs the electric sail\'s "final" model')
+    if device.kind == "thruster" and (device.thrust is not None or device.specific_impulse is not None):
+        found.append("the first-order solution is compared at constant acceleration, without loss of mass")
     return found
 
 

@@ -10,6 +10,7 @@ import hashlib
 import platform
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numba
 import numpy as np
@@ -40,6 +41,9 @@ from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.run import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust, join
 from sailviz.scene import HELD_STARTS, Scene
 
+if TYPE_CHECKING:
+    from sailviz.first_order import FirstOrder
+
 BLOCK_ROWS = 8192
 DEFAULT_OUTPUTS = 1000
 BODIES = {
@@ -65,6 +69,7 @@ class Plan:
     watch: happening.Watch
     names: tuple[str, ...]  # of the watched events
     design: object | None  # the design's result for starts that ask for one
+    approximations: dict[str, FirstOrder]
     keep: tuple  # compiled user functions must live as long as the plan
     identity: str
 
@@ -119,6 +124,7 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
         watch,
         names,
         design,
+        _approximations(scene, body, position, velocity, design),
         tuple(keep),
         _identity(scene, steering, force),
     )
@@ -383,6 +389,34 @@ def _watched(scene, body):
     return tuple(names), happening.watch(rows)
 
 
+def _approximations(scene, body, position, velocity, design) -> dict[str, FirstOrder]:
+    """The analytic solutions that a scene wants recorded beside its own."""
+    if not scene.approximation:
+        return {}
+    from sailviz.first_order import FirstOrder
+
+    r0, mu = float(np.linalg.norm(position)), body.mu
+    device, steering = scene.device, scene.steering
+    law = steering.kind if steering is not None else "radial"
+    pitch = steering.pitch * np.sign(np.sin(steering.clock)) if law == "orbital" else 0.0
+    if device.kind == "thruster":
+        size = device.acceleration * r0**2 / mu
+        if law == "circumferential":
+            pitch = np.pi / 2
+        thrust = (size * np.cos(pitch), size * np.sin(pitch), 0)
+    else:
+        from sailviz.design import asymptotic
+
+        shape = "electric-sail" if device.kind == "electric-sail" else _film(scene)
+        thrust = asymptotic.thrust(shape, _sail_strength(scene, design), pitch, r0, mu)
+    return {
+        item.name: FirstOrder(
+            position, velocity, mu, scene.propagation.duration, thrust, item.leg, item.scheme, scene.source
+        )
+        for item in scene.approximation
+    }
+
+
 # ---------------------------------------------------------------- plan -> blocks
 def simulate(scene: Scene, *, steering=None, force=None) -> Run:
     """Propagate a scene and return the whole Run.
@@ -448,8 +482,14 @@ def _blocks(p: Plan, block_rows, progress):
                 planets = _planets_in_view(p)
                 setting = _setting(p, planets, rows)
             block = _observed(p, *columns, first, off_time)
-            bodies = _bodies(p, planets, block.time)
-            yield replace(block, setting=setting, bodies=bodies, events=tuple(found), ended=ended)
+            yield replace(
+                block,
+                setting=setting,
+                bodies=_bodies(p, planets, block.time),
+                approximations={name: way.positions(block.time) for name, way in p.approximations.items()},
+                events=tuple(found),
+                ended=ended,
+            )
         if status in (dop853.UNDERFLOW, dop853.NOT_FINITE):
             reason = "The step size fell below the resolution of time"
             if status == dop853.NOT_FINITE:
@@ -664,5 +704,7 @@ def _references(p: Plan, planets) -> tuple[Reference, ...]:
                 e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument, turn, p.body.mu
             )[0]
             found.append(Reference("initial orbit", "initial", curve))
+    time = np.linspace(0.0, p.scene.propagation.duration, 2000)
+    found += [Reference(name, "approximation", way.positions(time)) for name, way in p.approximations.items()]
     found += [Reference(name, "planet", orbit) for name, orbit in planets.items()]
     return tuple(found)

@@ -121,6 +121,7 @@ def plots_of(first: Run, frame: Frame) -> list[Plot]:
             lambda run: unit * run.thrust.magnitude[:, None],
             from_zero=True,
         ),
+        *([approximation_plot(first)] if first.approximations else []),
         *(environment_plot(name, look.SERIES[(4 + k) % 5]) for k, name in enumerate(environment)),
     ]
 
@@ -146,6 +147,18 @@ def thrust_units(first: Run) -> tuple[float, str]:
     if size == 0 or size >= 0.0995e-3:
         return 1e3, "mm/s²"
     return (1e6, "µm/s²") if size >= 0.0995e-6 else (1e9, "nm/s²")
+
+
+def approximation_plot(first: Run) -> Plot:
+    """How far off other answers are, in per cent of the distance from the centre."""
+    names = tuple(first.approximations)
+
+    def values(run: Run) -> np.ndarray:
+        off = [np.linalg.norm(run.approximations[name] - run.position, axis=1) for name in names]
+        return 100 * np.stack(off, 1) / np.linalg.norm(run.position, axis=1)[:, None]
+
+    colors = tuple(look.SERIES[(1 + k) % 5] for k in range(len(names)))
+    return Plot("/plots/approximation", "Approximation off by [% of r]", names, colors, values, from_zero=True)
 
 
 def environment_plot(name: str, color) -> Plot:

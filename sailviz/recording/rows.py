@@ -13,7 +13,7 @@ import rerun as rr
 
 from sailviz.constants import YEAR
 from sailviz.errors import RecordingError
-from sailviz.run import Run
+from sailviz.run import COLUMNS, Run
 
 LONGEST = 2**63 / 1e9  # s that a timeline of 64-bit nanoseconds can count: 292 years
 
@@ -28,8 +28,7 @@ def take(run: Run, index) -> Run:
             return {key: pick(value) for key, value in part.items()}
         return type(part)(*(pick(getattr(part, f.name)) for f in fields(part)))
 
-    columns = ("time", "position", "velocity", "mass", "attitude", "thrust", "elements", "environment", "bodies")
-    return replace(run, **{name: pick(getattr(run, name)) for name in columns})
+    return replace(run, **{name: pick(getattr(run, name)) for name in COLUMNS})
 
 
 def stride(rows: int, most: int) -> int:

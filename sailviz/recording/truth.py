@@ -5,6 +5,7 @@
 /thrust       acceleration_m_s2 (inertial, 3), acceleration_rtn_m_s2 (3), magnitude_m_s2, on (bool)
 /elements     semi_major_axis_m, eccentricity, inclination_rad, raan_rad, argument_rad, true_anomaly_rad
 /environment  whatever acted, the unit in each name; absent where nothing did
+/approximation  NAME_position_m (3) and NAME_error_m of every other answer that was asked for; absent without any
 /events       name, time_s, state (position m, velocity m/s, mass kg: 7), at the first row not before the event
 /scene        static: what the run was made from and how far it got
 
@@ -61,7 +62,20 @@ def tables(run: Run) -> dict[str, dict[str, np.ndarray]]:
             "true_anomaly_rad": elements.true_anomaly,
         },
         "/environment": dict(run.environment),
+        "/approximation": {
+            key: value
+            for name, position in run.approximations.items()
+            for key, value in (
+                (f"{word(name)}_position_m", position),
+                (f"{word(name)}_error_m", np.linalg.norm(position - run.position, axis=1)),
+            )
+        },
     }
+
+
+def word(name: str) -> str:
+    """A name as part of a column's or an entity's: "first order" -> first_order."""
+    return "".join(letter if letter.isalnum() else "_" for letter in name.lower())
 
 
 def arrow_column(values) -> pa.Array:

@@ -19,6 +19,7 @@ from sailviz.recording import craft, look, meshes
 from sailviz.recording.layout import Layout
 from sailviz.recording.look import points
 from sailviz.recording.pen import Pen, f4
+from sailviz.recording.truth import word
 from sailviz.recording.samples import Frame, Samples, orbits, smooth_lines
 from sailviz.run import Reference, Run
 
@@ -62,6 +63,10 @@ class World:
                     rr.Points3D.from_fields(radii=points(look.PLANET_DOTS.get(name, 4.6)), colors=[color]),
                 )
                 pen.label_style(f"/world/names/{name}", color, name)
+        for name in first.approximations:
+            path = f"/world/approximation/{word(name)}"
+            pen.static(f"{path}/place", rr.Points3D.from_fields(radii=points(4.2), colors=[look.APPROXIMATION]))
+            pen.label_style(f"{path}/name", look.APPROXIMATION, name)
         self._draw_craft()
         self._draw_trail_style()
 
@@ -110,6 +115,10 @@ class World:
                     f"/world/planets/{name}/body", index, rr.Points3D.columns(positions=f4(position / self._frame.unit))
                 )
                 pen.labels(f"/world/names/{name}", index, position / self._frame.unit)
+        for name, position in samples.run.approximations.items():
+            path, place = f"/world/approximation/{word(name)}", position / self._frame.unit
+            pen.columns(f"{path}/place", index, rr.Points3D.columns(positions=f4(place)))
+            pen.labels(f"{path}/name", index, place)
         if not self._planet:
             zero = np.zeros_like(samples.position)
             foot = samples.position * [1.0, 1.0, 0.0]
@@ -252,6 +261,8 @@ def draw_reference(pen: Pen, reference: Reference, length: float) -> None:
         return
     target = reference.role == "target"
     color, width = (look.TARGET, "target") if target else (look.INITIAL, "orbit")
+    if reference.role == "approximation":
+        color = look.dim(look.APPROXIMATION)
     name = reference.name.lower().replace(" ", "_").replace("/", "_")
     pen.lines(f"/world/references/{name}", [1.006 * line if target else line], color, look.WIDTH[width])
 

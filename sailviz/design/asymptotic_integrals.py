@@ -40,24 +40,18 @@ def a_integral(k, anomaly, sine, cosine, e, eta):
 
 
 @inlined
-def b_integral(k, nu, s, anomaly, sine, cosine, e, eta, b):
-    """B_k up to a constant, k = 0 ... 3."""
+def b_integral(k, nu, c, s, anomaly, sine, cosine, e, eta, b):
+    """B_k up to a constant, k = 0 ... 3; cosine and sine c, s of nu."""
     if k == 0:
         return s
     if k == 1:  # (nu - A_1) / e, without dividing by e
-        half = 0.5 * (nu - anomaly)  # atan(x), x = b sin(nu) / (1 + b cos(nu))
-        x = np.tan(half)
-        ratio = half / x if abs(x) > 1e-4 else 1.0 - x * x / 3.0
-        c_times_b = cosine_of_true(cosine, e) * b
-        return (-e * nu + 2.0 * s / (1.0 + c_times_b) * ratio) / (eta * (1.0 + eta))
+        y = s / (1.0 + b * c)
+        x = b * y  # tan((nu - E) / 2)
+        ratio = 0.5 * (nu - anomaly) / x if abs(x) > 1e-4 else 1.0 - x * x / 3.0
+        return (2.0 * y * ratio - e * nu) / (eta * (1.0 + eta))
     if k == 2:
         return (sine - e * anomaly) / eta**3
     return ((1.0 + e * e) * sine - 1.5 * e * anomaly - 0.5 * e * sine * cosine) / eta**5
-
-
-@inlined
-def cosine_of_true(cosine, e):
-    return (cosine - e) / (1.0 - e * cosine)
 
 
 @inlined

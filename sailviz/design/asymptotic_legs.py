@@ -21,8 +21,8 @@ SMALLEST_E = 1e-3  # below it the closed form of the time loses digits as 1/e^2,
 SAMPLES = 12  # per half revolution, in the search for q3 <= 0 or s <= 0
 MOST_LEGS = 10_000_000
 
-_X8, _W8 = np.polynomial.legendre.leggauss(8)
-_X20, _W20 = np.polynomial.legendre.leggauss(20)
+# Gauss-Legendre with 3, 8 and 20 points, one after the other, for panels that are short, middling and up to a half turn
+_NODES, _WEIGHTS = (np.concatenate(x) for x in zip(*map(np.polynomial.legendre.leggauss, (3, 8, 20)), strict=True))
 
 
 @inlined
@@ -31,8 +31,8 @@ def _increments(n, nu, c, s, anomaly, sine, cosine, c0, a0, bk0, bm0, e, eta, b,
     solution."""
     k, m = 2 - n, 3 - n
     big_s, small_s = s_difference(k, c, c0, e), s_difference(m, c, c0, e)
-    dbk = b_integral(k, nu, s, anomaly, sine, cosine, e, eta, b) - bk0
-    dbm = b_integral(m, nu, s, anomaly, sine, cosine, e, eta, b) - bm0
+    dbk = b_integral(k, nu, c, s, anomaly, sine, cosine, e, eta, b) - bk0
+    dbm = b_integral(m, nu, c, s, anomaly, sine, cosine, e, eta, b) - bm0
     da = a_integral(m, anomaly, sine, cosine, e, eta) - a0
     return (
         scale * (eps_r * big_s + eps_t * (dbk + dbm)),
@@ -51,8 +51,8 @@ def _start(n, nu0, e, eta, b):
         c,
         anomaly,
         a_integral(3 - n, anomaly, sine, cosine, e, eta),
-        b_integral(2 - n, nu0, s, anomaly, sine, cosine, e, eta, b),
-        b_integral(3 - n, nu0, s, anomaly, sine, cosine, e, eta, b),
+        b_integral(2 - n, nu0, c, s, anomaly, sine, cosine, e, eta, b),
+        b_integral(3 - n, nu0, c, s, anomaly, sine, cosine, e, eta, b),
     )
 
 
@@ -123,11 +123,11 @@ def _quadrature(n, e0, e1, p1, p2, q3, c0, a0, bk0, bm0, e, eta, b, frozen_q3, s
     total = unit * ((e1 - e0) - e * (np.sin(e1) - np.sin(e0)))
     panels = max(int(np.ceil(abs(e1 - e0) / np.pi - 1e-12)), 1)
     half = 0.5 * (e1 - e0) / panels
-    few = abs(half) < 0.25
+    first, points = (0, 3) if abs(half) < 0.005 else (3, 8) if abs(half) < 0.25 else (11, 20)
     for j in range(panels):
         middle = e0 + (2 * j + 1) * half
-        for i in range(8 if few else 20):
-            anomaly = middle + half * (_X8[i] if few else _X20[i])
+        for i in range(first, first + points):
+            anomaly = middle + half * _NODES[i]
             sine, cosine = np.sin(anomaly), np.cos(anomaly)
             u = 1.0 - e * cosine
             c, s = (cosine - e) / u, eta * sine / u
@@ -137,8 +137,7 @@ def _quadrature(n, e0, e1, p1, p2, q3, c0, a0, bk0, bm0, e, eta, b, frozen_q3, s
             )
             h = q3 + d3
             v = h + (p1 + d1) * c + (p2 + d2) * s
-            weight = _W8[i] if few else _W20[i]
-            total += half * weight * (eta / (u * h * v * v) - unit * u)
+            total += half * _WEIGHTS[i] * (eta / (u * h * v * v) - unit * u)
     return total
 
 

@@ -11,6 +11,7 @@ import json
 import tomllib
 from datetime import UTC, date, datetime
 from functools import cache
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -484,7 +485,8 @@ class Expectation(Section):
     """A quantity that the run must reach: value and tolerance in the quantity's own unit."""
 
     quantity: str
-    at: Literal["start", "end", "min", "max"] | str | None = None
+    closed_form: Literal["kepler", "reduced-kepler", "displaced-orbit", "logarithmic-spiral"] | None = None
+    at: Literal["start", "end", "min", "max", "mean", "drift"] | str | None = None
     at_time: Time | None = None
     value: float
     within: Annotated[float, POSITIVE] | None = None
@@ -496,8 +498,12 @@ class Expectation(Section):
 
         if self.quantity not in spellings():
             raise _wrong(f'unknown quantity "{self.quantity}". {nearest(self.quantity, spellings())}')
+        if (self.quantity == "closed_form_error") != (self.closed_form is not None):
+            raise _wrong('closed_form belongs to quantity = "closed_form_error" and to no other')
         _one_of(self, "at", "at_time")
         _one_of(self, "within", "within_percent")
+        if self.value == 0 and self.within_percent is not None:
+            raise _wrong("of a value of 0 no percentage can be taken: give within")
         return self
 
 
@@ -510,6 +516,7 @@ class Scene(Section):
     look_for: list[str] = []
     family: Literal["displaced", "spirals", "deorbit", "wind", "transfers"] | None = None
     epoch: datetime | date | None = None
+    ephemeris: Literal["mean-elements", "de421"] = "mean-elements"
     body: Literal["sun", "earth"] | CustomBody = "sun"
     start: Start
     device: Devices
@@ -603,6 +610,11 @@ def _conflicts(scene: Scene) -> list[tuple[str, str]]:
             found.append(("steering.kind", 'a logarithmic spiral needs a fixed pitch: kind = "orbital"'))
         elif abs(abs(steering.clock) % 6.283185307179586 - 1.5707963267948966) > 1e-9:
             found.append(("steering.clock", "a logarithmic spiral is planar: clock_deg = 90 (negative pitch goes inwards)"))
+    if scene.ephemeris == "de421" and scene.epoch is not None:
+        if not 1900 <= scene.epoch.year <= 2053 - duration / 3.15576e7:
+            found.append(("ephemeris", "DE421 reaches from 1899 to 2053"))
+        if find_spec("skyfield_data") is None or find_spec("jplephem") is None:
+            found.append(("ephemeris", 'DE421 needs the extra "ephemeris": pip install "sailviz[ephemeris]"'))
     if scene.approximation:
         found += [("approximation[0]", sentence) for sentence in _beyond_first_order(scene)]
         if len({item.name for item in scene.approximation}) < len(scene.approximation):
@@ -629,8 +641,8 @@ def _conflicts(scene: Scene) -> list[tuple[str, str]]:
             found.append((f"event[{i}].altitude", "the body has no radius to measure an altitude from"))
     names = {w.name or w.kind for w in scene.event} | {"impact", "thrust on", "thrust off", "brake off"}
     for i, expected in enumerate(scene.expect):
-        if expected.at not in (None, "start", "end", "min", "max") and expected.at not in names:
-            words = ["start", "end", "min", "max", *sorted(names)]
+        if expected.at not in (None, "start", "end", "min", "max", "mean", "drift") and expected.at not in names:
+            words = ["start", "end", "min", "max", "mean", "drift", *sorted(names)]
             found.append((f"expect[{i}].at", f'no such moment "{expected.at}". {nearest(expected.at, words)}'))
         if expected.at_time is not None and not 0 <= expected.at_time <= duration:
             found.append((f"expect[{i}].at_time", "outside the run"))

@@ -618,7 +618,7 @@ def _bodies(p: Plan, planets, time) -> dict[str, np.ndarray]:
         return {}
     if p.body.name == "Earth":
         return {"Sun": ephemeris.sun_position(epoch, time)}
-    return {name: ephemeris.planet_position(name, epoch, time) for name in planets}
+    return {name: ephemeris.planet_position(name, epoch, time, p.scene.ephemeris) for name in planets}
 
 
 # ---------------------------------------------------------------- what the picture needs to know

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import click
 
-from sailviz.cli_recordings import COMMANDS
+from sailviz import cli_pictures, cli_recordings
 from sailviz.cli_shared import (
     EXPECTATION_FAILED,
     collecting_failures,
@@ -33,7 +33,7 @@ def main():
     """Trajectories of solar sails, electric sails and plasma brakes: computed, recorded, replayed."""
 
 
-for _command in COMMANDS:
+for _command in (*cli_recordings.COMMANDS, *cli_pictures.COMMANDS):
     main.add_command(_command)
 
 
@@ -145,7 +145,7 @@ def _open(sinks):
 
 def _run_one(name, values, sinks, quiet, failures):
     scene = load_scene(name, values)
-    from sailviz.expectations import Judge
+    from sailviz.expectations import Judge, table
     from sailviz.simulation import simulate_blocks
 
     say_if_compiling(quiet)
@@ -197,8 +197,8 @@ def _run_one(name, values, sinks, quiet, failures):
 
         end = f", ended by {ended}" if ended else ""
         click.echo(f"{scene.title}: {duration(seconds)}, {rows:,} rows{end}")
-        for verdict in verdicts:
-            click.echo(f"  {verdict}")
+        if verdicts:
+            click.echo(table(verdicts))
         for path in recorded.paths:
             click.echo(f"Recorded {path}; look at it with: {_rerun()} {path}")
     failed = [verdict for verdict in verdicts if not verdict.passed]

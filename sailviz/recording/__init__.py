@@ -25,6 +25,8 @@ _HOMES = {
     "info": "summary",
     "picture": "shot",
     "PictureReport": "shot",
+    "make_movie": "movie",
+    "MovieReport": "movie",
 }
 __all__ = list(_HOMES)
 

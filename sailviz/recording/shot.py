@@ -108,12 +108,12 @@ class Studio:
     def __exit__(self, *_) -> None:
         self._stop()
 
-    def shoot(self, png, *, view: str | None = None, at=1.0, active: str | None = None) -> PictureReport:
+    def shoot(self, png, *, view: str | None = None, at=1.0, active: str | None = None, agree=AGREE) -> PictureReport:
         """Take a picture of the window, or of one view alone; `active` is the start of the name of the tab in front."""
         started = time.monotonic()
         identity = self._show(view, active)
         self._go(at)
-        image = self._settled(identity)
+        image = self._settled(identity, agree)
         if identity is None and not self._panels:
             image = without_bar(image)
         try:
@@ -172,13 +172,15 @@ class Studio:
         }[timeline.time_type]()
         self._client.set_time(timeline.name, play_state="paused", **place)
 
-    def _settled(self, view_id) -> bytes:
+    def _settled(self, view_id, agree: int) -> bytes:
         """A screenshot once it no longer changes: chunks are loaded lazily."""
         last, same, started = b"", 1, time.monotonic()
-        while same < AGREE and time.monotonic() - started < SETTLE:
+        while time.monotonic() - started < SETTLE:
             image = self._client.take_screenshot(view_id) if view_id else self._client.take_screenshot()
             same = same + 1 if image == last else 1
             last = image
+            if same >= agree:
+                break
             time.sleep(0.1)
         return last
 

@@ -1,0 +1,171 @@
+"""The commands that show: picture, view, web, gallery. Heavy modules are imported inside."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+
+from sailviz.cli_shared import (
+    collecting_failures,
+    progress_bar,
+    say_if_compiling,
+    set_option,
+    values_of,
+)
+from sailviz.errors import RecordingError
+
+VIEW_FAILED = 1
+MAGIC = b"RRF2"  # the first bytes of a recording
+PICTURE_SIZE, MOVIE_SIZE = (1600, 900), (960, 540)
+
+
+class Size(click.ParamType):
+    """WIDTHxHEIGHT in pixels."""
+
+    name = "size"
+
+    def convert(self, value, parameter, context):
+        if isinstance(value, tuple):
+            return value
+        found = re.fullmatch(r"(\d{2,5})[x×](\d{2,5})", value.strip())
+        size = (int(found[1]), int(found[2])) if found else (0, 0)
+        if not all(64 <= side <= 8192 for side in size):
+            self.fail(f"{value!r} is not WIDTHxHEIGHT in pixels, 64 to 8192 each, such as 1600x900", parameter, context)
+        return size
+
+
+@click.command()
+@click.argument("sources", nargs=-1, required=True, metavar="FILE|SCENE...")
+@click.option("-o", "--output", metavar="PNG|DIR", help="By default NAME.png in this folder.")
+@click.option(
+    "--view", metavar="NAME", help="One view alone, by the start of its name: System, Follow, Earth, Events..."
+)
+@click.option("--at", default="end", show_default=True, metavar="TIME", help="start, end, 0.6, or 120d, 0.5yr, 36h.")
+@click.option("--size", type=Size(), metavar="WxH", help="In pixels; 1600x900, a movie 960x540.")
+@click.option("--bare", is_flag=True, help="Leave out menu and time panel, as movies do.")
+@click.option("--movie", "film", metavar="MOVIE", help="Make a .webp, .gif or .mp4 of the whole run instead.")
+@click.option("--seconds", type=float, default=8.0, show_default=True, help="How long the movie lasts.")
+@click.option("--fps", type=float, default=12.0, show_default=True, help="Pictures in a second of the movie.")
+@click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
+@set_option
+def picture(sources, output, view, at, size, bare, film, seconds, fps, quiet, settings):
+    """Take pictures or make movies of recordings and scenes, without a screen.
+
+    A scene is simulated first. Exit code 1 where a view of the recording complains.
+    """
+    if film and output:
+        raise click.UsageError("-o is for pictures; --movie names its own file.")
+    if len(sources) > 1 and (film or (output and Path(output).suffix)):
+        raise click.UsageError("one name, but there are several sources: give a folder.")
+    with collecting_failures() as failures, failures.next():
+        _check_before(at, film)
+        for source, out in zip(sources, _outputs(sources, output, film), strict=True):
+            with failures.next(source), _recording_of(source, settings, quiet) as path:
+                if film:
+                    report = _film(path, out, source, view, size or MOVIE_SIZE, seconds, fps, quiet)
+                else:
+                    report = _shoot(path, out, view, at, size or PICTURE_SIZE, bare)
+                for sentence in report.errors:
+                    click.echo(f"{source}: {sentence}", err=True)
+                    failures.worst(VIEW_FAILED)
+                if not quiet:
+                    click.echo(_said(report))
+
+
+def _check_before(at, film) -> None:
+    """Everything that can be known to fail before a scene is simulated."""
+    from sailviz.recording.moment import moment
+    from sailviz.recording.movie import check_format
+    from sailviz.recording.shot import check_vulkan
+
+    check_vulkan()
+    moment(at)
+    if film:
+        check_format(film)
+
+
+def _outputs(sources, output, film) -> list[Path]:
+    """Where the picture of each source goes; folders are made."""
+    if film:
+        files = [Path(film)]
+    elif output and Path(output).suffix and not Path(output).is_dir():
+        files = [Path(output)]
+        if files[0].suffix.lower() != ".png":
+            raise RecordingError(f"{output} is no picture: its name must end in .png")
+    else:
+        files = [Path(output or ".") / f"{Path(source).stem}.png" for source in sources]
+        twice = next((file.name for file in files if files.count(file) > 1), None)
+        if twice:
+            raise RecordingError(f"two pictures would have the same name, {twice}: take them one by one with -o")
+    try:
+        files[0].parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RecordingError(f"cannot make the folder {files[0].parent}: {error.strerror.lower()}") from None
+    return files
+
+
+def _shoot(path, out, view, at, size, bare):
+    from dataclasses import replace
+
+    from sailviz.recording.moment import fraction_of
+    from sailviz.recording.movie import written_whole
+    from sailviz.recording.shot import picture
+
+    at = fraction_of(path, at)
+    with written_whole(out) as part:
+        report = picture(path, part, view=view, at=at, size=size, panels=not bare)
+    return replace(report, path=out)
+
+
+def _film(path, out, source, view, size, seconds, fps, quiet):
+    from sailviz.recording.movie import make_movie
+
+    with progress_bar(f"Movie of {source}", quiet) as progress:
+        return make_movie(path, out, view=view, size=size, seconds=seconds, fps=fps, progress=progress)
+
+
+def _said(report) -> str:
+    width, height = report.size
+    frames = f", {report.frames} frames" if hasattr(report, "frames") else ""
+    return f"{report.path}: {width} x {height}{frames}, {report.path.stat().st_size / 1e3:,.0f} kB"
+
+
+def is_recording(source) -> bool:
+    """Whether a source is a recording, by its ending or its first bytes, rather than a scene."""
+    path = Path(source)
+    if path.suffix == ".rrd":
+        return True
+    try:
+        with path.open("rb") as file:
+            return file.read(4) == MAGIC
+    except OSError:
+        return False
+
+
+@contextmanager
+def _recording_of(source, settings, quiet):
+    """The path of a recording: the source itself, or a temporary one of the scene."""
+    if is_recording(source):
+        if settings:
+            raise RecordingError(f"{source} is a recording: --set changes scenes, and this one was flown already")
+        yield Path(source)
+        return
+    from sailviz.scene import load_scene
+
+    scene = load_scene(source, values_of(settings))
+    from sailviz.recording import record
+    from sailviz.simulation import simulate_blocks
+
+    say_if_compiling(quiet)
+    with tempfile.TemporaryDirectory(prefix="sailviz-") as folder:
+        path = Path(folder) / f"{Path(source).stem}.rrd"
+        with progress_bar(scene.title, quiet) as progress:
+            record(simulate_blocks(scene, progress=progress), path)
+        yield path
+
+
+COMMANDS = (picture,)

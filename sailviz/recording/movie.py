@@ -1,0 +1,184 @@
+"""Movies of a recording, frame by frame from one headless viewer: webp, gif, and mp4 with the extra `movie`."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+import time
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from sailviz.errors import RecordingError
+from sailviz.recording.moment import fraction_of
+from sailviz.recording.shot import FRAME, Studio
+
+MOST_FRAMES = 3000
+AGREE = 2  # pictures in a row that must be the same, after the first: the viewer has loaded everything by then
+WEBP_QUALITY = 82  # of 100; thin bright lines on black still have clean edges
+PALETTE_FROM = 9  # frames, evenly spaced, from which a gif's colours are chosen
+
+
+@dataclass(frozen=True)
+class MovieReport:
+    """A movie that was made. `errors` and `warnings` are what the views complained about in any frame."""
+
+    path: Path
+    size: tuple[int, int]
+    frames: int
+    errors: tuple[str, ...]
+    warnings: tuple[str, ...]
+    seconds: float  # of wall time
+
+
+def make_movie(
+    path,
+    out,
+    *,
+    view: str | None = None,
+    start="start",
+    end="end",
+    seconds: float = 8.0,
+    fps: float = 12.0,
+    size=(960, 540),
+    panels: bool = False,
+    progress=None,
+) -> MovieReport:
+    """Make a movie of a recording; its format is the ending of `out`: .webp, .gif or .mp4.
+
+    view, panels : as in `picture`; start, end : moments of the run, as in `fraction_of`; seconds, fps : of the movie
+    progress : called with the fraction that is done
+    Nothing is written unless all of it is. Raises RecordingError for what cannot be shown, encoded or written.
+    """
+    began = time.monotonic()
+    encode = check_format(out)
+    count = round(seconds * fps)
+    if not (seconds > 0 and 0 < fps <= 60 and 1 < count <= MOST_FRAMES):
+        raise RecordingError(
+            f"a movie has 2 to {MOST_FRAMES:,} frames, at most 60 in a second, not {seconds:g} s at {fps:g} per second"
+        )
+    first, last = fraction_of(path, start), fraction_of(path, end)
+    if view is not None:
+        size, panels = (size[0] + FRAME[0], size[1] + FRAME[1]), False
+    errors, warnings, frames = {}, {}, []
+    with written_whole(out) as part, tempfile.TemporaryDirectory(prefix="sailviz-") as scratch:
+        with Studio(path, size=size, panels=panels) as studio:
+            for number, at in enumerate(np.linspace(first, last, count)):
+                patience = {"agree": AGREE} if number else {}
+                report = studio.shoot(Path(scratch) / f"{number:05d}.png", view=view, at=float(at), **patience)
+                frames.append(report.path)
+                errors |= dict.fromkeys(report.errors)
+                warnings |= dict.fromkeys(report.warnings)
+                if progress:
+                    progress((number + 1) / (count + 1))  # the encoding counts as a frame
+        with _writing(Path(out)):
+            encode(frames, part, fps)
+        if progress:
+            progress(1.0)
+    return MovieReport(Path(out), report.size, count, tuple(errors), tuple(warnings), time.monotonic() - began)
+
+
+def check_format(out):
+    """The encoder for a file's ending. RecordingError where there is none, so that it is known before the work."""
+    encoders = {".webp": webp, ".gif": gif, ".mp4": mp4}
+    ending = Path(out).suffix.lower()
+    if ending not in encoders:
+        raise RecordingError(f"{out} is no movie: its name must end in .webp, .gif or .mp4")
+    if ending == ".mp4":
+        ffmpeg()
+    return encoders[ending]
+
+
+def ffmpeg():
+    try:
+        import imageio_ffmpeg
+    except ImportError:
+        raise RecordingError("mp4 needs the extra movie: pip install 'sailviz[movie]'; webp and gif do not") from None
+    return imageio_ffmpeg
+
+
+def webp(frames: list[Path], out: Path, fps: float) -> None:
+    images = [image(frame) for frame in frames]
+    images[0].save(
+        out,
+        "WEBP",
+        save_all=True,
+        append_images=images[1:],
+        duration=round(1000 / fps),
+        loop=0,
+        quality=WEBP_QUALITY,
+        method=4,
+    )
+
+
+def gif(frames: list[Path], out: Path, fps: float) -> None:
+    """One palette for all frames and no dithering, so that what stands still does not flicker."""
+    from PIL import Image
+
+    chosen = [image(frames[i]) for i in np.unique(np.linspace(0, len(frames) - 1, PALETTE_FROM).astype(int))]
+    width, height = chosen[0].size
+    sheet = Image.new("RGB", (width, height * len(chosen)))
+    for row, frame in enumerate(chosen):
+        sheet.paste(frame, (0, row * height))
+    palette = sheet.quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    images = [image(frame).quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    images[0].save(
+        out, "GIF", save_all=True, append_images=images[1:], duration=round(1000 / fps), loop=0, optimize=False
+    )
+
+
+def mp4(frames: list[Path], out: Path, fps: float) -> None:
+    width, height = image(frames[0]).size
+    width, height = width - width % 2, height - height % 2  # H.264 halves the resolution of colours
+    writer = ffmpeg().write_frames(
+        str(out),
+        (width, height),
+        fps=fps,
+        codec="libx264",
+        macro_block_size=2,
+        output_params=["-crf", "20", "-movflags", "+faststart"],
+    )
+    writer.send(None)
+    try:
+        for frame in frames:
+            writer.send(np.ascontiguousarray(np.asarray(image(frame))[:height, :width]))
+    except OSError as error:
+        raise RecordingError(f"the encoder of mp4 failed: {str(error).splitlines()[0]}") from None
+    finally:
+        writer.close()
+
+
+def image(path: Path):
+    from PIL import Image
+
+    with Image.open(path) as opened:
+        return opened.convert("RGB")
+
+
+@contextmanager
+def written_whole(path):
+    """A temporary name beside a file; the file appears under its own when all went well, and not at all otherwise."""
+    path = Path(path)
+    if path.is_dir():
+        raise RecordingError(f"cannot write {path}: it is a directory")
+    if not path.parent.is_dir():
+        raise RecordingError(f"cannot write {path}: there is no directory {path.parent}")
+    part = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    try:
+        with _writing(path):
+            part.touch()
+        yield part
+        with _writing(path):
+            os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+@contextmanager
+def _writing(path: Path):
+    try:
+        yield
+    except OSError as error:
+        raise RecordingError(f"cannot write {path}: {(error.strerror or str(error)).lower()}") from None

@@ -126,7 +126,7 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
         design,
         _approximations(scene, body, position, velocity, design),
         tuple(keep),
-        _identity(scene, steering, force),
+        _identity(scene, steering=steering, force=force),
     )
 
 
@@ -134,14 +134,29 @@ def _custom_body(scene):
     return scene.body.name, scene.body.mu, scene.body.radius
 
 
-def _identity(scene, *functions) -> str:
-    """Hash of the scene and of the user's functions."""
+def _identity(scene, **functions) -> str:
+    """Hash of the scene and of the user's functions, each under the name of its part."""
     digest = hashlib.sha256(scene.identity().encode())
-    for function in functions:
+    for part, function in functions.items():
         if function is not None:
-            code = getattr(function, "py_func", getattr(function, "__wrapped__", None))
-            digest.update(code.__code__.co_code + repr(code.__code__.co_consts).encode() if code else b"cfunc")
+            digest.update(f"{part} {_written(function)}".encode())
     return digest.hexdigest()[:16]
+
+
+def _written(function, seen=()) -> str:
+    """What a user's function is made of: its code, its constants and what it takes from around it, functions too."""
+    function = getattr(function, "py_func", getattr(function, "__wrapped__", function))
+    code = getattr(function, "__code__", None)
+    if isinstance(function, (int, float, complex, str, tuple, np.ndarray)):
+        return repr(np.asarray(function).tolist())
+    if code is None:
+        return type(function).__name__
+    if code in seen:
+        return code.co_name
+    around = {name: function.__globals__[name] for name in code.co_names if name in function.__globals__}
+    around |= dict(zip(code.co_freevars, (cell.cell_contents for cell in function.__closure__ or ()), strict=True))
+    names = [f"{name} = {_written(value, (*seen, code))}" for name, value in around.items()]
+    return f"{code.co_code.hex()} {code.co_consts} {code.co_names} {names}"
 
 
 def _film(scene) -> Film:
@@ -471,7 +486,9 @@ def _blocks(p: Plan, block_rows, progress):
         if not dop853.in_use(state):
             off_time = min([off_time] + [event.time for event in found if event.name == "brake off"])
         last = status != dop853.DONE or first + count == rows
-        ended = {dop853.STOPPED: found[-1].name if found else "", dop853.SURFACE: "impact"}.get(status, "")
+        ended = "impact" if status == dop853.SURFACE else ""
+        if status == dop853.STOPPED:
+            ended = p.names[dop853.stopped_by(state)]
         if ended:  # the state at the event is the last row
             now = dop853.time(state)
             if not len(columns[0]) or columns[0][-1] < now:

@@ -294,6 +294,17 @@ def test_stop_ends_the_run_at_the_event(fly):
     assert np.array_equal(dop853.state(flight.integration), flight.events[0][2])
 
 
+@pytest.mark.parametrize("block", [1, 2, 7])
+def test_no_row_before_the_stop_is_lost_between_blocks(fly, block):
+    """The step that finds the stop may reach over several blocks of rows."""
+    times, watched = np.linspace(0, TURN, 1001), [(RADIUS, 1.0, 1, STOP)]
+    whole = fly(None, *perihelion(0.3), times, events=watched)
+    pieces = fly(None, *perihelion(0.3), times, events=watched, block=block)
+    assert pieces.status == dop853.STOPPED
+    assert dop853.stopped_by(pieces.integration) == 0
+    assert np.array_equal(pieces.states, whole.states)
+
+
 def test_two_crossings_inside_one_step_are_both_seen(fly):
     """Steps of 0.483 straddle aphelion at pi: the radius there is exceeded for a good half of one step only."""
     e, step = 0.1, np.pi / 6.5

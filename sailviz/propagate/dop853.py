@@ -33,14 +33,14 @@ DENSE, CLOCK = 19, 27  # eight rows of monomial coefficients over the last step;
 
 # places in the CLOCK row and in Integration.count
 _T, _H, _DENSE_START, _DENSE_STEP = 0, 1, 2, 3
-_ROW, _INTERVAL, _IN_USE, _STARTED, _STEPS, _REJECTED, _EVENTS, _STATUS = 0, 1, 2, 3, 4, 5, 6, 7
+_ROW, _INTERVAL, _IN_USE, _STARTED, _STEPS, _REJECTED, _EVENTS, _STATUS, _STOPPED_BY = 0, 1, 2, 3, 4, 5, 6, 7, 8
 
 
 class Integration(NamedTuple):
     """Everything that an integration remembers between calls."""
 
     work: np.ndarray  # (28, SIZE) sixteen stages, the first the derivative at the state; then the rows named above
-    count: np.ndarray  # (8,) int64, see the places above
+    count: np.ndarray  # (9,) int64, see the places above
     sign: np.ndarray  # (events,) event functions at the state
     event: np.ndarray  # (MOST_EVENTS and those of one step, 9) index in the watch, time s, state
 
@@ -50,7 +50,7 @@ def start(t, position, velocity, mass, events=0) -> Integration:
     work = np.zeros((28, SIZE))
     work[Y] = (*position, *velocity, mass)
     work[CLOCK, _T] = work[CLOCK, _DENSE_START] = t
-    count = np.zeros(8, dtype=np.int64)
+    count = np.zeros(9, dtype=np.int64)
     count[_IN_USE] = 1
     of_one_step = EVENT_SAMPLES * events + 1  # each sample may see each event once, and then there is the surface
     return Integration(work, count, np.zeros(events), np.zeros((MOST_EVENTS * (events > 0) + of_one_step, 9)))
@@ -77,6 +77,11 @@ def drain_events(s: Integration) -> list[tuple[int, float, np.ndarray]]:
 def in_use(s: Integration) -> bool:
     """False once an END_OF_USE event has switched the device off for good."""
     return bool(s.count[_IN_USE])
+
+
+def stopped_by(s: Integration) -> int:
+    """Index in the watch of the event that stopped the run, after STOPPED."""
+    return int(s.count[_STOPPED_BY])
 
 
 def rows_done(s: Integration) -> int:
@@ -334,8 +339,9 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
     s : Integration, changed in place. model : Model. breaks (k,), factors (k,) : the thrust factor is factors[i] from
     breaks[i] on, breaks[0] <= start. watch : Watch. t_out (n,) : increasing times of this block's rows. out (6 or 7, n) :
     position, velocity and, with seven rows, mass. t_end : end of the whole run. tolerance : relative, per step.
-    largest_step : s. DONE: block full; EVENTS_FULL: drain them and call again with the same block; STOPPED by an event;
-    SURFACE: the craft touched the body; UNDERFLOW or NOT_FINITE: the integration broke down at time(s).
+    largest_step : s. DONE: block full; EVENTS_FULL: drain them and call again with the same block; STOPPED by an event, or
+    SURFACE, the craft touched the body: rows up to time(s) are filled, in this block and those before;
+    UNDERFLOW or NOT_FINITE: the integration broke down at time(s).
     """
     n, components = t_out.shape[0], out.shape[0]
     mu, surface = model.parameters[MU], model.parameters[SURFACE_RADIUS]
@@ -356,11 +362,12 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
     row = 0
     if count[_STATUS] == EVENTS_FULL:
         row = count[_ROW]
-    count[_STATUS] = DONE
+    ended = count[_STATUS] == STOPPED or count[_STATUS] == SURFACE  # in a step of which rows are still to be filled
+    if not ended:
+        count[_STATUS] = DONE
     t = clock[_T]
     interval = count[_INTERVAL]
     factor = factors[interval] * count[_IN_USE]
-    ended = False
     while row < n:
         # rows inside the last step, or exactly at its end
         if t_out[row] < t:
@@ -442,7 +449,7 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
             t = t0 + stop_x * h
             _evaluate(m, stop_x, new)
             if stop_index >= 0 and watch.action[stop_index] == STOP:
-                count[_STATUS] = STOPPED
+                count[_STATUS], count[_STOPPED_BY] = STOPPED, stop_index
             elif stop_index >= 0:
                 count[_IN_USE] = 0
         new_factor = factor
@@ -463,4 +470,6 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
             ended = True
     count[_ROW] = row
     clock[_T], count[_INTERVAL] = t, interval
+    if ended and row == n and n > 0 and t_out[n - 1] < t:
+        return DONE  # the next block may have rows before the end
     return count[_STATUS]

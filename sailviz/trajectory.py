@@ -162,8 +162,8 @@ def trajectory(
         Thrust(thrust, frames.to_frame(axes, thrust), size, size > 0),
         elements(position, velocity, body.mu),
         columns,
-        _bodies(body, epoch, time, planets),
-        marks,
+        bodies=_bodies(body, epoch, time, planets),
+        events=marks,
     )
     return replace(run, setting=replace(setting, identity=_identity(run)))
 

@@ -28,7 +28,7 @@ from sailviz.recording.reader import (
 )
 from sailviz.run import Run
 
-TRUTH = ("/state", "/attitude", "/thrust", "/elements", "/environment")
+TRUTH = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/approximation")
 APART = (*TRUTH, "/events", "/scene", "/about")  # not part of the picture
 FACTS = ("title", "family", "body", "body_mu_m3_s2", "craft_kind", "rows", "complete", "ended", "identity", "versions")
 FACTS += ("body_radius_m", "accuracy", "text")

@@ -1,0 +1,129 @@
+"""Motions known in closed form, by the names that [[expect]] takes: what a run must be, given its first row.
+
+Each needs the state in which the run starts and nothing else, so that it judges propagation, forces and steering at
+once.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from sailviz import ephemeris
+from sailviz.run import Run
+
+Motion = Callable[[np.ndarray], np.ndarray]  # times (n,) s after the first row -> positions (n, 3) m
+
+
+def kepler(start: Run) -> Motion:
+    """A conic round the central body: flight without thrust.
+
+    Ellipses by Lagrange's f and g in differences of the eccentric anomaly, which holds over many turns; parabolas,
+    hyperbolas and what is close to them by universal variables. Source: Battin, An Introduction to the Mathematics and
+    Methods of Astrodynamics (1999), sections 4.4-4.5, not read but re-derived.
+    """
+    r_vec, v_vec, mu = start.position[0], start.velocity[0], start.setting.body.mu
+    r, sigma = np.linalg.norm(r_vec), r_vec @ v_vec / np.sqrt(mu)
+    alpha = 2 / r - v_vec @ v_vec / mu  # 1 / a
+
+    def ellipse(time):
+        a = 1 / alpha
+        e_cos, e_sin = 1 - r / a, sigma / np.sqrt(a)
+        e, first = np.hypot(e_cos, e_sin), np.arctan2(e_sin, e_cos)
+        anomaly = ephemeris._eccentric_anomaly(first - e_sin + np.sqrt(mu / a**3) * time, e)
+        c, s = np.cos(anomaly - first), np.sin(anomaly - first)
+        return 1 - a / r * (1 - c), a * sigma / np.sqrt(mu) * (1 - c) + r * np.sqrt(a / mu) * s
+
+    def universal(time):
+        x, due = np.sqrt(mu) * time / r, np.sqrt(mu) * time
+        for _ in range(60):  # Laguerre's method of order 5, which converges from anywhere
+            c2, c3 = _stumpff(alpha * x * x)
+            miss = sigma * x * x * c2 + (1 - alpha * r) * x**3 * c3 + r * x - due
+            slope = sigma * x * (1 - alpha * x * x * c3) + (1 - alpha * r) * x * x * c2 + r
+            bend = sigma * (1 - alpha * x * x * c2) + (1 - alpha * r) * x * (1 - alpha * x * x * c3)
+            x = x - 5 * miss / (slope + np.sqrt(np.abs(16 * slope * slope - 20 * miss * bend)))
+        c2, c3 = _stumpff(alpha * x * x)
+        return 1 - x * x * c2 / r, sigma * x * x * c2 / np.sqrt(mu) + r * x * (1 - alpha * x * x * c3) / np.sqrt(mu)
+
+    solution = ellipse if alpha * r > 0.05 else universal
+
+    def motion(time):
+        f, g = solution(time)
+        return f[:, None] * r_vec + g[:, None] * v_vec
+
+    return motion
+
+
+def _stumpff(z):
+    """(1 - cos sqrt z) / z and (sqrt z - sin sqrt z) / sqrt z^3, and what they become for z <= 0. (n,) -> two (n,)"""
+    q = np.sqrt(np.maximum(np.abs(z), 1e-300))
+    with np.errstate(over="ignore", invalid="ignore"):
+        far2 = np.where(z > 0, 2 * np.sin(q / 2) ** 2, 2 * np.sinh(q / 2) ** 2) / q**2
+        far3 = np.where(z > 0, q - np.sin(q), np.sinh(q) - q) / q**3
+    near2 = near3 = 0.0
+    for k in range(11, -1, -1):  # Horner's scheme of sum (-z)^k / (2k + 2)! and / (2k + 3)!
+        near2 = near2 * -z + 1 / math.factorial(2 * k + 2)
+        near3 = near3 * -z + 1 / math.factorial(2 * k + 3)
+    return np.where(np.abs(z) < 1, near2, far2), np.where(np.abs(z) < 1, near3, far3)
+
+
+def reduced_kepler(start: Run) -> Motion:
+    """A conic under the gravity that radial thrust falling as 1/r^2 leaves: an ideal sail that faces the Sun."""
+    body = start.setting.body
+    outward = start.thrust.acceleration[0] @ start.position[0] / np.linalg.norm(start.position[0])
+    left = replace(body, mu=body.mu - outward * (start.position[0] @ start.position[0]))
+    return kepler(replace(start, setting=replace(start.setting, body=left)))
+
+
+def displaced_orbit(start: Run) -> Motion:
+    """A circle about the z axis at constant rate, at any height over the plane. Source: thesis, section 4.2."""
+    x, y, z = start.position[0]
+    rho2 = x * x + y * y
+    rate = (x * start.velocity[0, 1] - y * start.velocity[0, 0]) / rho2
+
+    def motion(time):
+        c, s = np.cos(rate * time), np.sin(rate * time)
+        return np.stack([x * c - y * s, x * s + y * c, np.full_like(c, z)], axis=1)
+
+    return motion
+
+
+def logarithmic_spiral(start: Run) -> Motion:
+    """r = r0 exp(theta tan(gamma)) in the plane of the first row, its speed falling as 1/sqrt(r).
+
+    From r' = v_r0 sqrt(r0/r): r^1.5 = r0^1.5 + 1.5 v_r0 sqrt(r0) t, theta = ln(r/r0) / tan(gamma).
+    """
+    r_vec, v_vec = start.position[0], start.velocity[0]
+    r0 = np.linalg.norm(r_vec)
+    r_hat = r_vec / r0
+    v_r = v_vec @ r_hat
+    t_vec = v_vec - v_r * r_hat
+    v_t = np.linalg.norm(t_vec)
+    t_hat = t_vec / v_t
+
+    def motion(time):
+        u = 1.5 * v_r * time / r0
+        with np.errstate(invalid="ignore"):
+            r = r0 * (1 + u) ** (2 / 3)
+            grown = np.log1p(u) * 2 / 3
+        theta = v_t / r0 * time if v_r == 0 else grown * v_t / v_r
+        return r[:, None] * (np.cos(theta)[:, None] * r_hat + np.sin(theta)[:, None] * t_hat)
+
+    return motion
+
+
+FORMS: dict[str, Callable[[Run], Motion]] = {
+    "kepler": kepler,
+    "reduced-kepler": reduced_kepler,
+    "displaced-orbit": displaced_orbit,
+    "logarithmic-spiral": logarithmic_spiral,
+}
+
+
+def error(motion: Motion, start: float, run: Run) -> np.ndarray:
+    """Distance of each row from the closed form, over the closed form's distance from the body. start : s. (n,)"""
+    position = motion(run.time - start)
+    return np.linalg.norm(run.position - position, axis=1) / np.linalg.norm(position, axis=1)

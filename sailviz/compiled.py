@@ -23,9 +23,10 @@ _SOURCES = tuple(
 def compiled(function):
     """Compile a module-level function of scalars and arrays on first use and keep the machine code on disk.
 
-    numba honours NUMBA_CACHE_DIR, then tries the package's __pycache__, then the user's cache folder; where none of them
-    can be written the function is compiled anew in every process. The code on disk holds for the sources it was made of:
-    numba itself looks at the function's own file only, and would miss a change in a function that this one calls.
+    numba honours NUMBA_CACHE_DIR, then tries the package's __pycache__, then the user's cache folder; where none of
+    them can be written the function is compiled anew in every process. The code on disk holds for the sources it was
+    made of: numba itself looks at the function's own file only, and would miss a change in a function that this one
+    calls.
     """
     try:
         dispatcher = numba.njit(cache=True, **_OPTIONS)(function)
@@ -40,20 +41,21 @@ def compiled(function):
 def inlined(function):
     """Like `compiled`, for small functions that only other compiled functions call; the optimiser merges them.
 
-    They may read and write arrays but not create any: compiled without reference counting, which would otherwise cost as much
-    as the physics (134 ns against 71 ns for one right-hand side, numba 0.68).
+    They may read and write arrays but not create any: compiled without reference counting, which would otherwise
+    cost as much as the physics (134 ns against 71 ns for one right-hand side, numba 0.68).
     """
     return numba.njit(_nrt=False, forceinline=True, **_OPTIONS)(function)
 
 
 def called(function):
-    """Like `inlined`, for functions called from so many places that copies of them would only lengthen the compilation."""
+    """Like `inlined`, for functions called from so many places that copies of them would only lengthen the
+    compilation."""
     return numba.njit(_nrt=False, **_OPTIONS)(function)
 
 
 def is_compiled(function) -> bool:
-    """Whether the machine code of a `compiled` function is in memory or on disk already. A guess: it only decides whether a
-    person is told to wait."""
+    """Whether the machine code of a `compiled` function is in memory or on disk already. A guess: it only decides
+    whether a person is told to wait."""
     if function.signatures:
         return True
     try:

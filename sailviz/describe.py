@@ -66,7 +66,11 @@ def parameters_in_words(scene, design, strength) -> list[tuple[str, str]]:
         if device.kind == "solar-sail" and device.lightness_number is not None:
             rows += [("lightness number", f"{device.lightness_number:.6g}")]
     if device.kind == "plasma-brake":
-        rows += [("tether", length(device.tether_length)), ("voltage", f"−{device.voltage:g} V"), ("mass", f"{device.mass:g} kg")]
+        rows += [
+            ("tether", length(device.tether_length)),
+            ("voltage", f"−{device.voltage:g} V"),
+            ("mass", f"{device.mass:g} kg"),
+        ]
     if device.kind == "thruster":
         if device.acceleration is not None:
             rows += [("acceleration", acceleration(device.acceleration))]
@@ -79,7 +83,10 @@ def parameters_in_words(scene, design, strength) -> list[tuple[str, str]]:
         rows += [("pitch", angle(float(design.pitch)))]
     wind = scene.environment.solar_wind
     if wind.kind == "gamma":
-        rows += [("mean pressure", f"{wind.shape * wind.scale * 1e9:.4g} nPa"), ("redrawn every", duration(wind.redraw))]
+        rows += [
+            ("mean pressure", f"{wind.shape * wind.scale * 1e9:.4g} nPa"),
+            ("redrawn every", duration(wind.redraw)),
+        ]
     return rows
 
 
@@ -134,4 +141,3 @@ def resolved_lines(scene) -> list[str]:
 
     walk(scene, "")
     return lines
-

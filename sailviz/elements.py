@@ -27,9 +27,9 @@ class Elements:
 def elements(position, velocity, mu) -> Elements:
     """Osculating elements of a state. position m, velocity m/s : (..., 3), mu m3/s2.
 
-    Conventions where an angle loses its meaning: on an equatorial orbit the node is the x axis (raan 0), on a circular orbit
-    the periapsis is the node (argument 0). Without angular momentum inclination, raan and argument are NaN.
-    Source: Bate, Mueller and White, Fundamentals of Astrodynamics (1971), section 2.4; angles by atan2.
+    Conventions where an angle loses its meaning: on an equatorial orbit the node is the x axis (raan 0), on a
+    circular orbit the periapsis is the node (argument 0). Without angular momentum inclination, raan and argument
+    are NaN. Source: Bate, Mueller and White, Fundamentals of Astrodynamics (1971), section 2.4; angles by atan2.
     """
     r_vec, v_vec = np.broadcast_arrays(np.asarray(position, float), np.asarray(velocity, float))
     r = np.linalg.norm(r_vec, axis=-1)
@@ -59,18 +59,14 @@ def state(semi_major_axis, eccentricity, inclination, raan, argument, true_anoma
 
     Source: Bate, Mueller and White (1971), section 2.5.
     """
-    a, e, i, node, w, nu = np.broadcast_arrays(
-        semi_major_axis, eccentricity, inclination, raan, argument, true_anomaly
-    )
+    a, e, i, node, w, nu = np.broadcast_arrays(semi_major_axis, eccentricity, inclination, raan, argument, true_anomaly)
     p = a * (1 - e * e)
     r = p / (1 + e * np.cos(nu))
     u = nu + w
     cos_node, sin_node, cos_i, sin_i = np.cos(node), np.sin(node), np.cos(i), np.sin(i)
 
     def in_plane(x, y):  # x along the node, y ahead of it
-        return np.stack(
-            [x * cos_node - y * sin_node * cos_i, x * sin_node + y * cos_node * cos_i, y * sin_i], axis=-1
-        )
+        return np.stack([x * cos_node - y * sin_node * cos_i, x * sin_node + y * cos_node * cos_i, y * sin_i], axis=-1)
 
     speed = np.sqrt(mu / p)
     position = in_plane(r * np.cos(u), r * np.sin(u))

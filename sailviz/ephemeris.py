@@ -18,7 +18,7 @@ CENTURY = 36_525 * DAY
 
 # E. M. Standish, "Keplerian elements for approximate positions of the major planets", JPL, table 1 (1800-2050):
 # a au, e, i deg, mean longitude deg, longitude of perihelion deg, node deg; below each its rate per Julian century.
-# Errors there: 15-40 arcsec in longitude for the inner planets, up to 600 for Saturn. Earth is the Earth-Moon barycentre.
+# Errors there: 15-40 arcsec in longitude for the inner planets, up to 600 for Saturn. Earth: Earth-Moon barycentre.
 _MEAN = {
     "Mercury": (
         (0.38709927, 0.20563593, 7.00497902, 252.25032350, 77.45779628, 48.33076593),
@@ -55,7 +55,7 @@ def _seconds_since_j2000(epoch: np.datetime64) -> float:
 def planet_elements(name, seconds):
     """(a m, e, i, raan, argument, mean anomaly rad) of a planet, each (n,), at seconds (n,) after J2000."""
     values, rates = (np.array(row) for row in _MEAN[name])
-    a, e, i, longitude, perihelion, node = (values[:, None] + rates[:, None] * np.atleast_1d(seconds) / CENTURY)
+    a, e, i, longitude, perihelion, node = values[:, None] + rates[:, None] * np.atleast_1d(seconds) / CENTURY
     angles = np.radians([i, node, perihelion - node, longitude - perihelion])
     return a * AU, e, *angles
 
@@ -75,9 +75,10 @@ def _eccentric_anomaly(mean, e):
 def planet_position(name, epoch, time, source="mean-elements"):
     """Heliocentric position (n, 3) m, ecliptic of J2000, of a planet in PLANETS at times (n,) s after the epoch (UTC).
 
-    source : "mean-elements", off by up to 43, 30, 20, 55, 206 and 277 arcsec from Mercury to Saturn (measured against DE421
-    over 2030-2035; Mars: 56,000 km); or "de421", good to kilometres, which needs the extra `ephemeris` and times from 1899 to 2053.
-    ModuleNotFoundError without the extra, ValueError outside those years. Barycentres of planets with moons.
+    source : "mean-elements", off by up to 43, 30, 20, 55, 206 and 277 arcsec from Mercury to Saturn (measured
+    against DE421 over 2030-2035; Mars: 56,000 km); or "de421", good to kilometres, which needs the extra `ephemeris`
+    and times from 1899 to 2053. ModuleNotFoundError without the extra, ValueError outside those years. Barycentres
+    of planets with moons.
     """
     if source == "de421":
         return _de421(name, _seconds_since_j2000(epoch) + np.asarray(time, dtype=float))
@@ -94,7 +95,8 @@ OBLIQUITY_J2000 = np.radians(84381.448 / 3600)  # rad, IAU 1976, the obliquity o
 
 @cache
 def _kernel():
-    """JPL's DE421 (W. M. Folkner et al., IPN Progress Report 42-178, 2009), the copy that the package skyfield-data carries."""
+    """JPL's DE421 (W. M. Folkner et al., IPN Progress Report 42-178, 2009), the copy that the package skyfield-data
+    carries."""
     from importlib.util import find_spec
 
     home = find_spec("skyfield_data")

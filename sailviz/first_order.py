@@ -18,8 +18,11 @@ class FirstOrder:
     """Positions of a first-order solution at any time of a run."""
 
     def __init__(self, position, velocity, mu, duration, thrust, leg, scheme, source):
-        """position (3,) m and velocity (3,) m/s in the x-y plane; thrust : (radial, transverse, exponent), canonical for
-        length |position|; leg : rad or None; duration : s. SceneError, naming `source`, where the solution breaks down."""
+        """position (3,) m and velocity (3,) m/s in the x-y plane. thrust : (radial, transverse, exponent), canonical
+        for length |position|. leg : rad or None. duration : s.
+
+        SceneError, naming `source`, where the solution breaks down before the duration is over.
+        """
         r0 = float(np.linalg.norm(position))
         self._length, self._time = r0, np.sqrt(r0**3 / mu)
         speed = r0 / self._time

@@ -19,7 +19,8 @@ def rtn(position, velocity):
     """Axes of the orbital frame. position m, velocity m/s : (..., 3) -> R_rtn_to_inertial (..., 3, 3), axes as columns.
 
     Without angular momentum (a craft at rest, or falling straight down) the orbit has no plane: t_hat is then the
-    direction of increasing longitude and h_hat completes the frame towards the pole (x serves as longitude on the pole).
+    direction of increasing longitude and h_hat completes the frame towards the pole (x serves as longitude on the
+    pole).
     """
     position, velocity = np.broadcast_arrays(np.asarray(position, float), np.asarray(velocity, float))
     r_hat = unit(position)
@@ -79,11 +80,12 @@ def quaternion(axes):
 
 
 def pitch_cone_clock(axes, normal, thrust):
-    """Attitude angles, rad. axes (n, 3, 3) RTN columns, normal and thrust (n, 3) inertial -> pitch, cone, clock, each (n,).
+    """Attitude angles, rad. axes (n, 3, 3) RTN columns, normal and thrust (n, 3) inertial -> pitch, cone, clock,
+    each (n,).
 
-    Pitch is the angle from r_hat to the normal, cone the angle from r_hat to the thrust, clock the angle of the normal's
-    projection on the local horizon, from h_hat towards t_hat, in [0, 2 pi). Clock is 0 where the normal is radial, cone is 0
-    without thrust. Source: thesis, figures 3.1 and 3.2, as in (3.6)-(3.8).
+    Pitch is the angle from r_hat to the normal, cone the angle from r_hat to the thrust, clock the angle of the
+    normal's projection on the local horizon, from h_hat towards t_hat, in [0, 2 pi). Clock is 0 where the normal is
+    radial, cone is 0 without thrust. Source: thesis, figures 3.1 and 3.2, as in (3.6)-(3.8).
     """
     n_r, n_t, n_h = np.moveaxis(to_frame(axes, normal), -1, 0)
     a_r, a_t, a_h = np.moveaxis(to_frame(axes, thrust), -1, 0)

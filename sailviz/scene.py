@@ -146,15 +146,16 @@ class HeliostationaryStart(DesignedStart):
 
 
 class LagrangeStart(DesignedStart):
-    """At an artificial Lagrange point on the line from the Sun to a planet, environment.third_body or a massless Earth."""
+    """At an artificial Lagrange point on the line from the Sun to a planet, environment.third_body or a massless
+    Earth."""
 
     kind: Literal["lagrange-point"]
     radius: Annotated[Length, POSITIVE]
 
 
 class PlanetFollowingStart(DesignedStart):
-    """Over a planet on its ellipse, at its longitude, at a fixed elevation and a fixed share of its distance; perihelion on
-    the x axis."""
+    """Over a planet on its ellipse, at its longitude, at a fixed elevation and a fixed share of its distance;
+    perihelion on the x axis."""
 
     kind: Literal["planet-following"]
     planet: Literal["mercury", "venus", "earth", "mars", "jupiter"] | None = None
@@ -223,7 +224,8 @@ class FilmCoefficients(Section):
 
 
 class FilmOptics(Section):
-    """Own optical properties: reflectivity, specular share, non-Lambertian coefficients, emissivities of front and back."""
+    """Own optical properties: reflectivity, specular share, non-Lambertian coefficients, emissivities of front and
+    back."""
 
     cr: Annotated[float, Field(ge=0, le=1)]
     cs: Annotated[float, Field(ge=0, le=1)]
@@ -314,9 +316,7 @@ class NoDevice(Device):
     kind: Literal["none"]
 
 
-Devices = Annotated[
-    SolarSail | ElectricSail | PlasmaBrake | Thruster | NoDevice, Field(discriminator="kind")
-]
+Devices = Annotated[SolarSail | ElectricSail | PlasmaBrake | Thruster | NoDevice, Field(discriminator="kind")]
 
 
 # ---------------------------------------------------------------- how it is steered
@@ -367,9 +367,7 @@ class TableSteering(Section):
         return self
 
 
-Steering = Annotated[
-    PlainSteering | FrameSteering | InertialSteering | TableSteering, Field(discriminator="kind")
-]
+Steering = Annotated[PlainSteering | FrameSteering | InertialSteering | TableSteering, Field(discriminator="kind")]
 
 
 # ---------------------------------------------------------------- what surrounds it
@@ -552,8 +550,9 @@ class Scene(Section):
         return hashlib.sha256(canonical.encode()).hexdigest()[:16]
 
     def with_values(self, values: dict[str, Any]) -> Scene:
-        """A copy with other values. values : {"device.lightness_number": 0.1, "propagation.duration_yr": 2}, keys and units as
-        in a scene file; a key in another unit replaces the one in the file. SceneError as for `load_scene`."""
+        """A copy with other values. values : {"device.lightness_number": 0.1, "propagation.duration_yr": 2}, keys
+        and units as in a scene file; a key in another unit replaces the one in the file. SceneError as for
+        `load_scene`."""
         return _built(self._raw, values, self._text, self._source)
 
     @property
@@ -584,8 +583,8 @@ def _conflicts(scene: Scene) -> list[tuple[str, str]]:
         if law not in (None, "vertical"):
             found.append(("steering.kind", 'a plasma-brake tether hangs along the gravity gradient: "vertical"'))
     if device.kind == "thruster" and law in (None, "sun-facing", "vertical", "as designed"):
-        found.append(("steering.kind", 'a thruster needs a direction: "radial", "circumferential", "tangential", "inertial", '
-                      '"orbital", "meridian" or "table"'))  # fmt: skip
+        words = '"radial", "circumferential", "tangential", "inertial", "orbital", "meridian" or "table"'
+        found.append(("steering.kind", f"a thruster needs a direction: {words}"))
     if sail and law in ("circumferential", "tangential", "vertical"):
         found.append(("steering.kind", f'"{law}" is a thruster\'s law; a sail is steered by pitch and clock angle'))
     designed = getattr(device, "characteristic_acceleration", None) == "as designed"
@@ -609,7 +608,9 @@ def _conflicts(scene: Scene) -> list[tuple[str, str]]:
         elif law != "orbital":
             found.append(("steering.kind", 'a logarithmic spiral needs a fixed pitch: kind = "orbital"'))
         elif abs(abs(steering.clock) % 6.283185307179586 - 1.5707963267948966) > 1e-9:
-            found.append(("steering.clock", "a logarithmic spiral is planar: clock_deg = 90 (negative pitch goes inwards)"))
+            found.append(
+                ("steering.clock", "a logarithmic spiral is planar: clock_deg = 90 (negative pitch goes inwards)")
+            )
     if scene.ephemeris == "de421" and scene.epoch is not None:
         if not 1900 <= scene.epoch.year <= 2053 - duration / 3.15576e7:
             found.append(("ephemeris", "DE421 reaches from 1899 to 2053"))
@@ -658,7 +659,9 @@ def _beyond_first_order(scene: Scene) -> list[str]:
     law = steering.kind if steering else "sun-facing"
     sideways = law != "orbital" or abs(abs(steering.clock) % 3.141592653589793 - 1.5707963267948966) < 1e-9
     if law not in ("orbital", "sun-facing", "radial", "circumferential") or not sideways:
-        found.append("the first-order solution needs a fixed pitch in the orbit plane, or radial or circumferential thrust")
+        found.append(
+            "the first-order solution needs a fixed pitch in the orbit plane, or radial or circumferential thrust"
+        )
     if device.active is not None or scene.environment.solar_wind.kind != "steady" or device.kind == "plasma-brake":
         found.append("the first-order solution needs thrust that is always on and never disturbed")
     if device.kind == "electric-sail" and device.model != "final":
@@ -676,9 +679,9 @@ def _body_radius(scene: Scene) -> float:
 def load_scene(source, set: dict[str, Any] | None = None) -> Scene:
     """Read, check and convert a scene.
 
-    source : path of a TOML file, the name of a shipped scene ("displaced/circular"), or a dict as tomllib would give it.
-    set : values to put over those of the file, keys dotted: {"propagation.duration_yr": 1}.
-    Raises SceneError with every fault at once.
+    source : path of a TOML file, the name of a shipped scene ("displaced/circular"), or a dict as tomllib would give
+    it. set : values to put over those of the file, keys dotted: {"propagation.duration_yr": 1}. Raises SceneError
+    with every fault at once.
     """
     if isinstance(source, dict):
         return _built(source, set or {}, "", "scene")

@@ -312,9 +312,7 @@ def _steering(scene, design):
     if steering is None:
         return law.RADIAL, (), *plain
     if steering.kind == "as designed" and isinstance(design, Track):
-        table = law.table(
-            design.time - design.time[0], design.pitch, np.unwrap(design.clock), design.throttle, "cubic"
-        )
+        table = law.table(design.time - design.time[0], design.pitch, np.unwrap(design.clock), design.throttle, "cubic")
         return law.TABLE_ORBITAL, (), table, law.CUBIC
     if steering.kind == "as designed":
         if np.ndim(design.pitch) == 0 and design.pitch == 0:  # Sun-facing needs no orbit plane, and may have none
@@ -437,8 +435,9 @@ def simulate(scene: Scene, *, steering=None, force=None) -> Run:
     """Propagate a scene and return the whole Run.
 
     steering : own attitude law, force : own additional acceleration in m/s2; each a numba.cfunc of
-    sailviz.propagate.dynamics.USER_SIGNATURE or an @njit function (t, x, y, z, vx, vy, vz, m) -> three floats, SI, inertial.
-    Raises SceneError if the scene asks for something infeasible, PropagationError if the integration breaks down.
+    sailviz.propagate.dynamics.USER_SIGNATURE or an @njit function (t, x, y, z, vx, vy, vz, m) -> three floats, SI,
+    inertial. Raises SceneError if the scene asks for something infeasible, PropagationError if the integration
+    breaks down.
     """
     return join(list(simulate_blocks(scene, steering=steering, force=force)))
 
@@ -542,7 +541,8 @@ def _fill(p: Plan, state, times, switches, progress):
                 run.largest_step or np.inf,
             )
             found += [
-                Event("impact" if index < 0 else p.names[index], time, y) for index, time, y in dop853.drain_events(state)
+                Event("impact" if index < 0 else p.names[index], time, y)
+                for index, time, y in dop853.drain_events(state)
             ]
             if status != dop853.EVENTS_FULL:
                 break
@@ -615,7 +615,8 @@ def _planets_in_view(p: Plan) -> dict[str, np.ndarray]:
 
 
 def _farthest(p: Plan) -> float:
-    """Largest distance from the centre, m, from a coarse run ahead: a millisecond, and the same for blocks of any size."""
+    """Largest distance from the centre, m, from a coarse run ahead: a millisecond, and the same for blocks of any
+    size."""
     times = np.linspace(0.0, p.scene.propagation.duration, 256)
     out = np.empty((6, len(times)))
     state = dop853.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))

@@ -1,8 +1,8 @@
 """Attitude laws: which way the sail normal (or a thruster) points, given time and state.
 
-Clock angles run from h_hat towards t_hat in the orbital frame (h_hat the osculating angular momentum), from the meridian
-upwards towards increasing longitude in the meridian frame. Source: thesis, section 3.1; definitions of both frames as used
-for displaced orbits.
+Clock angles run from h_hat towards t_hat in the orbital frame (h_hat the osculating angular momentum), from the
+meridian upwards towards increasing longitude in the meridian frame. Source: thesis, section 3.1; definitions of both
+frames as used for displaced orbits.
 """
 
 from __future__ import annotations
@@ -67,8 +67,8 @@ def _between(p, a, b, column, w, span, interpolation):
 
 @inlined
 def table_row(t, p, first, interpolation):
-    """Pitch rad, clock rad and throttle at time t s from the rows of COLUMNS numbers that fill p from place `first` on; the
-    first and the last row hold before and after."""
+    """Pitch rad, clock rad and throttle at time t s from the rows of COLUMNS numbers that fill p from place `first`
+    on; the first and the last row hold before and after."""
     low, high = 0, (len(p) - first) // COLUMNS - 1
     t = min(max(t, p[first]), p[first + COLUMNS * high])
     while high - low > 1:
@@ -92,7 +92,8 @@ def table_row(t, p, first, interpolation):
 def table(time, pitch, clock, throttle=None, interpolation="linear"):
     """Rows (n, COLUMNS) of a steering table from columns (n,): s, rad, rad, and the share of full thrust (1).
 
-    interpolation : "linear", "hold", or "cubic", a spline through the rows with continuous rates; SciPy's not-a-knot spline.
+    interpolation : "linear", "hold", or "cubic", a spline through the rows with continuous rates; SciPy's not-a-knot
+    spline.
     """
     time = np.asarray(time, dtype=float)
     columns = [np.asarray(pitch, float), np.asarray(clock, float), np.ones_like(time) if throttle is None else throttle]

@@ -13,7 +13,8 @@ pytest.importorskip("jplephem")
 pytest.importorskip("skyfield_data")
 
 EPOCH = np.datetime64("2030-01-01", "ns")
-# arcsec, largest difference over 2030-2035; Standish gives 15-40 for the inner planets, 400-600 for the giants over 1800-2050
+# arcsec, largest difference over 2030-2035. Standish gives, for 1800-2050, 15-40 for the inner planets, 400-600 for the
+# giants.
 STATED = {"Mercury": 43, "Venus": 31, "Earth": 21, "Mars": 55, "Jupiter": 207, "Saturn": 278}
 
 
@@ -36,9 +37,10 @@ def test_the_earth_of_de421_obeys_keplers_laws_over_a_day():
 
 
 def test_the_march_equinox_lies_where_the_almanac_says():
-    """2030-03-20 13:52 UTC: the Sun is at longitude 0 of date, the Earth at 180 deg of date. J2000 lags by 30.2 years of
-    precession, 50.29 arcsec a year; aberration takes 20.5 arcsec; nutation in longitude is -17.2 arcsec sin(260.6 deg), the
-    Moon's node; the Moon moves the Earth by up to 6.5 arcsec, and the minute is rounded: 1.2 arcsec."""
+    """2030-03-20 13:52 UTC: the Sun is at longitude 0 of date, the Earth at 180 deg of date. J2000 lags by 30.2
+    years of precession, 50.29 arcsec a year; aberration takes 20.5 arcsec; nutation in longitude is -17.2 arcsec
+    sin(260.6 deg), the Moon's node; the Moon moves the Earth by up to 6.5 arcsec, and the minute is rounded: 1.2
+    arcsec."""
     x = planet_position("Earth", np.datetime64("2030-03-20T13:52", "ns"), [0.0], "de421")[0]
     longitude = np.degrees(np.arctan2(x[1], x[0])) % 360
     of_date = longitude + (30.2155 * 50.29 - 20.5 - 17.2 * np.sin(np.radians(260.6))) / 3600

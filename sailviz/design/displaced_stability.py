@@ -71,25 +71,32 @@ def stability(elevation, rate_ratio, device="electric-sail", clock="orbital", co
     return Stability(squared, stable[()], growth[()], feasible[()], reason)
 
 
+def smallest_stable_rate(elevation, clock="orbital"):
+    """Rate ratio above which an electric sail's orbit is stable, over elevation in rad, same shape; it may be
+    infeasible.
+
+    "orbital": w cos^2(psi) > 1/2. "meridian": w > (3 - 2 cos^2(psi)) / (2 cos^2(psi)).
+    """
+    if clock not in CLOCKS:
+        raise ValueError(f"clock is {' or '.join(map(repr, CLOCKS))}, not {clock!r}")
+    square = np.cos(elevation) ** 2
+    return np.sqrt(1 / (2 * square) if clock == "orbital" else (3 - 2 * square) / (2 * square))
+
+
 def largest_stable_elevation(clock="orbital", cone_limit=None) -> tuple[float, float]:
     """(elevation rad, rate ratio) where the wedge of stable and feasible orbits of an electric sail closes.
 
-    cone_limit : rad, the electric sail's own by default. Law "orbital" needs w cos^2(psi) > 1/2, law "meridian"
-    w > (3 - 2 cos^2(psi)) / (2 cos^2(psi)); feasible is w <= T / (s c + T c^2). Orbital: exactly the largest cone
-    angle.
+    cone_limit : rad, the electric sail's own by default. Feasible is w <= T / (s c + T c^2), T = tan(cone_limit). Under
+    the law "orbital" the wedge closes exactly at the largest cone angle.
     """
     t = force_shape("electric-sail").slope_limit() if cone_limit is None else np.tan(cone_limit)
 
-    def room(psi):
+    def largest(psi):
         c, s = np.cos(psi), np.sin(psi)
-        least = 1 / (2 * c * c) if clock == "orbital" else (3 - 2 * c * c) / (2 * c * c)
-        return t / (s * c + t * c * c) - least
+        return np.sqrt(t / (s * c + t * c * c))
 
     if clock == "orbital":
         psi = np.arctan(t)
-    elif clock == "meridian":
-        psi = brentq(room, 1e-9, np.pi / 2 - 1e-9, xtol=1e-15)
     else:
-        raise ValueError(f"clock is {' or '.join(map(repr, CLOCKS))}, not {clock!r}")
-    c, s = np.cos(psi), np.sin(psi)
-    return float(psi), float(np.sqrt(t / (s * c + t * c * c)))
+        psi = brentq(lambda x: largest(x) - smallest_stable_rate(x, clock), 1e-9, np.pi / 2 - 1e-9, xtol=1e-15)
+    return float(psi), float(largest(psi))

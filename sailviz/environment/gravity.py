@@ -7,7 +7,8 @@ from sailviz.compiled import inlined
 
 @inlined
 def gravity(x, y, z, inverse, mu, j2_strength):
-    """Acceleration, m/s2. inverse = 1 / |position| 1/m, mu m3/s2, j2_strength = 1.5 J2 mu R^2 m5/s2 (0: sphere), z the pole.
+    """Acceleration, m/s2. inverse = 1 / |position| in 1/m, mu in m3/s2, j2_strength = 1.5 J2 mu R^2 in m5/s2 (0 for a
+    sphere), z along the pole.
 
     Source of the J2 term: Vallado, Fundamentals of Astrodynamics and Applications, section 8.6.
     """

@@ -1,12 +1,12 @@
 """Adaptive integration of one trajectory: Dormand-Prince 8(5,3) with dense output on the asked grid, and events on it.
 
-Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section II.10. Departures, all for orbits:
-the error is measured against |r| and against the larger of |v| and the circular speed instead of component by component; the
-dense output is rewritten as monomials once a step, so that a row of outputs is one vectorised Horner loop; steps land on
-every time at which the thrust factor or the steering table has a kink.
+Source: Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I (1993), section II.10. Departures, all for
+orbits: the error is measured against |r| and against the larger of |v| and the circular speed instead of component by
+component; the dense output is rewritten as monomials once a step, so that a row of outputs is one vectorised Horner
+loop; steps land on every time at which the thrust factor or the steering table has a kink.
 
-`Integration` keeps everything between calls of `advance`, so a run may be computed in blocks of any size and is the same to
-the last bit.
+`Integration` keeps everything between calls of `advance`, so a run may be computed in blocks of any size and is the
+same to the last bit.
 """
 
 from __future__ import annotations
@@ -67,8 +67,8 @@ def state(s: Integration) -> np.ndarray:
 
 
 def drain_events(s: Integration) -> list[tuple[int, float, np.ndarray]]:
-    """(index in the watch, time s, state (7,)) of every event since the last call; makes room for more. Index -1 is contact
-    with the surface."""
+    """(index in the watch, time s, state (7,)) of every event since the last call; makes room for more. Index -1 is
+    contact with the surface."""
     n = int(s.count[_EVENTS])
     s.count[_EVENTS] = 0
     return [(int(row[0]), float(row[1]), row[2:].copy()) for row in s.event[:n]]
@@ -291,8 +291,8 @@ def _note(s, index, time, w):
 
 @compiled
 def _find_events(s, watch, t0, h, x_end, mu, w):
-    """Record every event of the step [t0, t0 + h] up to x_end in order of time. Returns x of the first that stops the run or
-    ends the use of the device, else 2, and its index."""
+    """Record every event of the step [t0, t0 + h] up to x_end in order of time. Returns x of the first that stops
+    the run or ends the use of the device, else 2, and its index."""
     dense = s.work[DENSE:CLOCK]
     before = s.count[_EVENTS]
     low = 0.0
@@ -307,7 +307,9 @@ def _find_events(s, watch, t0, h, x_end, mu, w):
             s.sign[e] = g
             if watch.action[e] == END_OF_USE and s.count[_IN_USE] == 0:
                 continue
-            if not ((g_low < 0.0 and g >= 0.0 and watch.sense[e] >= 0) or (g_low > 0.0 and g <= 0.0 and watch.sense[e] <= 0)):
+            if not (
+                (g_low < 0.0 and g >= 0.0 and watch.sense[e] >= 0) or (g_low > 0.0 and g <= 0.0 and watch.sense[e] <= 0)
+            ):
                 continue
             x = _root(dense, kind, level, mu, low, high, g_low, w)
             at = s.count[_EVENTS]
@@ -320,7 +322,9 @@ def _find_events(s, watch, t0, h, x_end, mu, w):
                 stop_x, stop_index = x, e
         if stop_index >= 0:
             n = s.count[_EVENTS]
-            while n > before and s.event[n - 1, 1] > t0 + stop_x * h:  # what would have come after the stop did not happen
+            while (
+                n > before and s.event[n - 1, 1] > t0 + stop_x * h
+            ):  # what would have come after the stop did not happen
                 n -= 1
             s.count[_EVENTS] = n
             _evaluate(dense, stop_x, w)
@@ -336,11 +340,11 @@ def _find_events(s, watch, t0, h, x_end, mu, w):
 def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step):
     """Integrate until every row of the block is filled, or until something ends the run. Returns a status.
 
-    s : Integration, changed in place. model : Model. breaks (k,), factors (k,) : the thrust factor is factors[i] from
-    breaks[i] on, breaks[0] <= start. watch : Watch. t_out (n,) : increasing times of this block's rows. out (6 or 7, n) :
-    position, velocity and, with seven rows, mass. t_end : end of the whole run. tolerance : relative, per step.
-    largest_step : s. DONE: block full; EVENTS_FULL: drain them and call again with the same block; STOPPED by an event, or
-    SURFACE, the craft touched the body: rows up to time(s) are filled, in this block and those before;
+    s : Integration, changed in place. model : Model. breaks (k,), factors (k,) : the thrust factor is factors[i]
+    from breaks[i] on, breaks[0] <= start. watch : Watch. t_out (n,) : increasing times of this block's rows. out (6
+    or 7, n) : position, velocity and, with seven rows, mass. t_end : end of the whole run. tolerance : relative, per
+    step. largest_step : s. DONE: block full; EVENTS_FULL: drain them and call again with the same block; STOPPED by
+    an event, or SURFACE, the craft touched the body: rows up to time(s) are filled, in this block and those before;
     UNDERFLOW or NOT_FINITE: the integration broke down at time(s).
     """
     n, components = t_out.shape[0], out.shape[0]

@@ -82,8 +82,8 @@ USER_SIGNATURE = types.void(types.float64, _VECTOR, _VECTOR)  # time, state (7,)
 
 @intrinsic
 def user_vector(typing, address, t, x, y, z, vx, vy, vz, m):
-    """Three numbers from the C function at an integer address, so that the propagator itself stays one cached piece of machine
-    code whatever the user hands in. The buffers live on the stack."""
+    """Three numbers from the C function at an integer address, so that the propagator itself stays one cached piece
+    of machine code whatever the user hands in. The buffers live on the stack."""
 
     def generate(context, builder, signature, arguments):
         real = ir.DoubleType()
@@ -92,9 +92,7 @@ def user_vector(typing, address, t, x, y, z, vx, vy, vz, m):
         out = cgutils.alloca_once(builder, real, size=3)
         for i, value in enumerate(arguments[2:]):
             builder.store(value, builder.gep(state, [ir.Constant(ir.IntType(64), i)], source_etype=real))
-        function = builder.inttoptr(
-            arguments[0], ir.FunctionType(ir.VoidType(), [real, pointer, pointer]).as_pointer()
-        )
+        function = builder.inttoptr(arguments[0], ir.FunctionType(ir.VoidType(), [real, pointer, pointer]).as_pointer())
         builder.call(function, [arguments[1], state, out])
         places = [builder.gep(out, [ir.Constant(ir.IntType(64), i)], source_etype=real) for i in range(3)]
         result = [builder.load(place, typ=real) for place in places]
@@ -133,9 +131,7 @@ def direction(t, x, y, z, vx, vy, vz, m, ux, uy, uz, model):
     p = model.parameters
     kind = model.steering
     if kind == law.ORBITAL:
-        return law.orbital_direction(
-            ux, uy, uz, x, y, z, vx, vy, vz, p[STEERING], p[STEERING + 1], p[STEERING + 2]
-        )
+        return law.orbital_direction(ux, uy, uz, x, y, z, vx, vy, vz, p[STEERING], p[STEERING + 1], p[STEERING + 2])
     if kind == law.RADIAL:
         return ux, uy, uz
     if kind == law.MERIDIAN:
@@ -160,7 +156,8 @@ def direction(t, x, y, z, vx, vy, vz, m, ux, uy, uz, model):
 def brake_force(x, y, z, vx, vy, vz, r, sx, sy, sz, model):
     """Drag on a plasma-brake tether along the unit vector s, N, inertial, and its size per length, N/m.
 
-    Drag opposes the component of the plasma-relative velocity perpendicular to the tether; the plasma turns with the body.
+    Drag opposes the component of the plasma-relative velocity perpendicular to the tether; the plasma turns with the
+    body.
     """
     p = model.parameters
     w = p[ROTATION]
@@ -179,8 +176,8 @@ def brake_force(x, y, z, vx, vy, vz, r, sx, sy, sz, model):
 
 @inlined
 def device_acceleration(t, x, y, z, vx, vy, vz, m, inverse, factor, model):
-    """Acceleration of the device, m/s2 inertial, and m_dot, kg/s. inverse = 1 / |position|; factor multiplies both, and so
-    does the throttle of a steering table."""
+    """Acceleration of the device, m/s2 inertial, and m_dot, kg/s. inverse = 1 / |position|; factor multiplies
+    both, and so does the throttle of a steering table."""
     p = model.parameters
     if model.steering == law.TABLE_ORBITAL or model.steering == law.TABLE_MERIDIAN:
         factor = factor * law.table_row(t, p, TABLE, p[INTERPOLATION])[2]
@@ -193,9 +190,7 @@ def device_acceleration(t, x, y, z, vx, vy, vz, m, inverse, factor, model):
         )
         return ax, ay, az, 0.0
     if kind == ELECTRIC_SAIL:
-        ax, ay, az = esail_force(
-            ux, uy, uz, inverse, nx, ny, nz, factor * p[DEVICE], int(p[DEVICE + 1]), p[DEVICE + 2]
-        )
+        ax, ay, az = esail_force(ux, uy, uz, inverse, nx, ny, nz, factor * p[DEVICE], int(p[DEVICE + 1]), p[DEVICE + 2])
         return ax, ay, az, 0.0
     if kind == PLASMA_BRAKE:
         fx, fy, fz, _ = brake_force(x, y, z, vx, vy, vz, 1.0 / inverse, nx, ny, nz, model)
@@ -206,8 +201,8 @@ def device_acceleration(t, x, y, z, vx, vy, vz, m, inverse, factor, model):
 
 @inlined
 def third_body_gravity(t, x, y, z, p):
-    """Pull of a body on a circular orbit in the x-y plane, m/s2, the central body held fixed: the fall of the central body
-    towards the other, mu' / R'^2, is neglected (3e-6 of the Sun's pull for the Earth)."""
+    """Pull of a body on a circular orbit in the x-y plane, m/s2, the central body held fixed: the fall of the
+    central body towards the other, mu' / R'^2, is neglected (3e-6 of the Sun's pull for the Earth)."""
     angle = p[THIRD_BODY + 3] + p[THIRD_BODY + 2] * t
     dx, dy = p[THIRD_BODY + 1] * np.cos(angle) - x, p[THIRD_BODY + 1] * np.sin(angle) - y
     d2 = dx * dx + dy * dy + z * z
@@ -237,8 +232,8 @@ def derivative(t, y, factor, model, out):
 
 @compiled
 def observe(time, states, factor, model):
-    """What the craft did at given states. time (n,), states (7, n), factor (n,) ->
-    normal (n, 3), acceleration of device and user force together (n, 3) m/s2, drag per length (n,) N/m (plasma brake only)."""
+    """What the craft did at given states. time (n,), states (7, n), factor (n,) -> normal (n, 3), acceleration of
+    device and user force together (n, 3) m/s2, drag per length (n,) N/m (plasma brake only)."""
     n = len(time)
     p = model.parameters
     normal, acceleration, per_length = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros(n)

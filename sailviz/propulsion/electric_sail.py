@@ -21,7 +21,8 @@ PITCH_LIMIT = np.radians(60.0)  # of the original and updated models: the thesis
 
 @inlined
 def esail_force(ux, uy, uz, inverse, nx, ny, nz, ac, model, pitch_limit):
-    """Acceleration of an E-sail. u = r_hat, inverse = 1/r in 1/m, ac in m/s2 at 1 au. A sail plane has no front: n and -n are the same.
+    """Acceleration of an E-sail. u = r_hat, inverse = 1/r in 1/m, ac in m/s2 at 1 au. A sail plane has no front: n
+    and -n are the same.
 
     NaN beyond the pitch limit of the original and updated models, which do not describe the sail there.
     """
@@ -98,8 +99,8 @@ def cone_angle(pitch):
 def pitch_angle(cone):
     """The smaller pitch (larger thrust) of the final model that gives a cone angle, rad, same sign and shape: (3.46).
 
-    NaN beyond CONE_MAX = asin(1/3). The thesis' acos form loses half the digits near zero; this is the smaller root of the
-    same quadratic in T = tan(alpha): tan(phi) T^2 - T + 2 tan(phi) = 0.
+    NaN beyond CONE_MAX = asin(1/3). The thesis' acos form loses half the digits near zero; this is the smaller root
+    of the same quadratic in T = tan(alpha): tan(phi) T^2 - T + 2 tan(phi) = 0.
     """
     t = np.tan(np.asarray(cone, dtype=float))
     room = 1 - 8 * t * t
@@ -108,10 +109,8 @@ def pitch_angle(cone):
         return np.arctan(4 * t / (1 + np.sqrt(room)))
 
 
-def characteristic_acceleration(
-    tethers, length, voltage, mass, pressure=WIND_PRESSURE, wind_potential=WIND_POTENTIAL
-):
-    """a_c in m/s2 from hardware: number of tethers, length m of each, voltage V, total mass kg, dynamic pressure Pa at 1 au,
-    wind_potential V. Source: (3.40) a_c = N L sigma / m, (3.41) sigma = 0.18 max(0, V - V_w) sqrt(eps0 p)."""
+def characteristic_acceleration(tethers, length, voltage, mass, pressure=WIND_PRESSURE, wind_potential=WIND_POTENTIAL):
+    """a_c in m/s2 from hardware: number of tethers, length m of each, voltage V, total mass kg, dynamic pressure Pa
+    at 1 au, wind_potential V. Source: (3.40) a_c = N L sigma / m, (3.41) sigma = 0.18 max(0, V - V_w) sqrt(eps0 p)."""
     sigma = 0.18 * np.maximum(0.0, np.subtract(voltage, wind_potential)) * np.sqrt(VACUUM_PERMITTIVITY * pressure)
     return tethers * length * sigma / mass

@@ -1,7 +1,8 @@
 """Coulomb drag on a charged tether in the ionosphere.
 
-Force law after Janhunen, Ann. Geophys. 32, 1207 (2014); its form and its constant 3.864 were reconstructed and checked against
-the abstract (0.43 mN on 5 km), its text was not read. Current: orbital-motion-limited theory of a thin cylinder.
+Force law after Janhunen, Ann. Geophys. 32, 1207 (2014); its form and its constant 3.864 were reconstructed and
+checked against the abstract (0.43 mN on 5 km), its text was not read. Current: orbital-motion-limited theory of a
+thin cylinder.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ def force_per_length(density, ion_mass, speed, voltage, wire_radius=1e-3, polari
 
     density : ions, 1/m3. ion_mass : mean, kg. speed : m/s, relative to the plasma and perpendicular to the tether.
     voltage : V, absolute value. wire_radius : m, effective electric radius of the multi-wire tether.
-    polarity : "negative" (plasma brake) or "positive" (the E-sail's law with the ion ram energy in place of V_w, (3.41)).
+    polarity : "negative" (plasma brake) or "positive" (the E-sail's law, the ion ram energy in place of V_w, (3.41)).
     Valid for voltage far above the ram energy (4.7 V for oxygen in low orbit) and a sheath much wider than the tether;
     NaN where ln(sheath / wire_radius) is not above 1. The sheath width uses |V0|, not |V0| - V_i: 0.02 % of the force.
     """
@@ -52,9 +53,9 @@ def negative_force_per_length(density, ion_mass, speed, voltage, wire_radius):
 def current(density, ion_mass, speed, voltage, length, wire_diameter, polarity="negative"):
     """Current that the tether collects, A; scalars or arrays.
 
-    density 1/m3, ion_mass kg, speed m/s, voltage V (absolute), length m, wire_diameter m (sum over the wires of a multi-wire
-    tether, geometric). Ions for a negative tether, electrons for a positive one. Source: orbital-motion-limited cylinder,
-    dI/dz = e n D sqrt(2 e V / m + v^2), from memory of the textbook form.
+    density 1/m3, ion_mass kg, speed m/s, voltage V (absolute), length m, wire_diameter m (sum over the wires of a
+    multi-wire tether, geometric). Ions for a negative tether, electrons for a positive one. Source:
+    orbital-motion-limited cylinder, dI/dz = e n D sqrt(2 e V / m + v^2), from memory of the textbook form.
     """
     carrier = {"negative": ion_mass, "positive": MASS_ELECTRON}[polarity]
     ram = np.asarray(speed, dtype=float) ** 2 if polarity == "negative" else 0.0

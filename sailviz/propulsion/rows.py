@@ -6,7 +6,8 @@ import numpy as np
 
 
 def as_rows(*vectors):
-    """Broadcast vectors against each other. (..., 3) each -> list of C-contiguous (n, 3) float64, and the common shape."""
+    """Broadcast vectors against each other. (..., 3) each -> list of C-contiguous (n, 3) float64, and the common
+    shape."""
     arrays = np.broadcast_arrays(*(np.asarray(vector, dtype=float) for vector in vectors))
     shape = arrays[0].shape
     if not shape or shape[-1] != 3:

@@ -18,7 +18,7 @@ from sailviz.propulsion.rows import as_rows
 class Film:
     """Force coefficients of a film: b1 along the sunlight, b2 and b3 along the normal; efficiency scales all of them.
 
-    acceleration = (a_c / (b1 + b2 + b3)) (r_E / r)^2 cos(alpha) [b1 r_hat + (b2 cos(alpha) + b3) n_hat]   (3.17), (3.23)
+    acceleration = (a_c / (b1 + b2 + b3)) (r_E / r)^2 cos(alpha) [b1 r_hat + (b2 cos(alpha) + b3) n_hat]  (3.17), (3.23)
     """
 
     b1: float
@@ -44,8 +44,8 @@ class Film:
     def characteristic_acceleration(self, *, lightness=None, area=None, mass=None) -> float:
         """a_c in m/s2 at 1 au, facing the Sun, from the lightness number or from area m2 and mass kg.
 
-        (3.3), (3.5), (3.13), (3.22). For an imperfect film of given efficiency the lightness number is that of the ideal
-        film of the same loading, as in (3.12).
+        (3.3), (3.5), (3.13), (3.22). For an imperfect film of given efficiency the lightness number is that of the
+        ideal film of the same loading, as in (3.12).
         """
         if lightness is not None:
             return self.efficiency * lightness * GRAVITY_AT_1_AU
@@ -58,8 +58,8 @@ class Film:
     def components(self, pitch):
         """Radial and transverse force factors at a pitch in rad: a_r = a_c (r_E/r)^2 k_r, a_t = a_c (r_E/r)^2 k_t.
 
-        k_r = (b1 c + b2 c^3 + b3 c^2) / total, k_t = (b2 c^2 s + b3 c s) / total: (3.21) resolved along r_hat and t_hat.
-        Zero where the sail shows its back to the Sun.
+        k_r = (b1 c + b2 c^3 + b3 c^2) / total, k_t = (b2 c^2 s + b3 c s) / total: (3.21) resolved along r_hat and
+        t_hat. Zero where the sail shows its back to the Sun.
         """
         c, s = np.cos(pitch), np.sin(pitch)
         lit = c > 0
@@ -91,7 +91,11 @@ def sail_force(ux, uy, uz, inverse, nx, ny, nz, strength, b1, b2, b3):
     q = strength * c * inverse * inverse
     along_light = q * b1
     along_normal = q * (b2 * c + b3)
-    return along_light * ux + along_normal * nx, along_light * uy + along_normal * ny, along_light * uz + along_normal * nz
+    return (
+        along_light * ux + along_normal * nx,
+        along_light * uy + along_normal * ny,
+        along_light * uz + along_normal * nz,
+    )
 
 
 @compiled

@@ -13,11 +13,13 @@ from sailviz.constants import STANDARD_GRAVITY
 
 @inlined
 def thruster_force(dx, dy, dz, m, size, is_force, inverse_exhaust):
-    """Acceleration along the unit vector d, and m_dot in kg/s. size: m/s2, or N if is_force. inverse_exhaust: 1/(g0 Isp), s/m."""
+    """Acceleration along the unit vector d, and m_dot in kg/s. size: m/s2, or N if is_force. inverse_exhaust: 1/(g0
+    Isp), s/m."""
     a = size / m if is_force > 0.5 else size
     return a * dx, a * dy, a * dz, -m * a * inverse_exhaust  # (2.3)
 
 
 def propellant(delta_v, specific_impulse, initial_mass):
-    """Propellant in kg for a velocity change in m/s at a specific impulse in s: the rocket equation, (2.3) integrated."""
+    """Propellant in kg for a velocity change in m/s at a specific impulse in s: the rocket equation, (2.3)
+    integrated."""
     return initial_mass * -np.expm1(-np.asarray(delta_v, dtype=float) / (specific_impulse * STANDARD_GRAVITY))

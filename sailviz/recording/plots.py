@@ -69,8 +69,8 @@ def pitch_and_cone(run: Run) -> np.ndarray:
 
 
 def clock_about(start: float):
-    """The clock angle in the turn about 0 or in that about 180 deg, whichever its first value is nearer to: an angle that
-    sways about 0 must not jump by 360."""
+    """The clock angle in the turn about 0 or in that about 180 deg, whichever its first value is nearer to: an angle
+    that sways about 0 must not jump by 360."""
     low = 0.0 if np.cos(start) < 0 else -np.pi
     return lambda run: degrees(np.mod(run.attitude.clock - low, 2 * np.pi) + low)
 

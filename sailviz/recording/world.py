@@ -19,8 +19,8 @@ from sailviz.recording import craft, look, meshes
 from sailviz.recording.layout import Layout
 from sailviz.recording.look import points
 from sailviz.recording.pen import Pen, f4
-from sailviz.recording.truth import word
 from sailviz.recording.samples import Frame, Samples, orbits, smooth_lines
+from sailviz.recording.truth import word
 from sailviz.run import Reference, Run
 
 STRIP = 4  # drawn rows in one piece of the trail

@@ -58,8 +58,9 @@ def _entity(recording: Recording, name: str):
 
 
 def kinds(recording: Recording, name: str) -> dict[str, str]:
-    """Column -> what it holds, e.g. "float64 x 3", from the schema alone."""
-    entity = Entity(name, recording._chunks(name))
+    """Column -> what it holds, e.g. "float64 x 3", from the schema of the first rows."""
+    first = next(iter(recording._stream().filter(content=name, is_static=False)), None)
+    entity = Entity(name, [] if first is None else [first])
     found = {}
     for table in entity._tables:
         for column in table.column_names:

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from sailviz.constants import AU, MU_SUN
-from sailviz.design.displaced_stability import Stability, largest_stable_elevation, stability
+from sailviz.design.displaced_stability import Stability, largest_stable_elevation, smallest_stable_rate, stability
 from sailviz.design.displaced_tracks import flat_ellipse, planet_following, sampled_track, track
 from sailviz.design.force_shape import force_shape
 from sailviz.design.holding import Holding, Track, attitude
@@ -31,6 +31,7 @@ __all__ = [
     "largest_stable_elevation",
     "planet_following",
     "sampled_track",
+    "smallest_stable_rate",
     "stability",
     "state",
     "track",

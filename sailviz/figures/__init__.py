@@ -1,0 +1,67 @@
+"""Figures a reader wants to see on paper: the thesis' own, redrawn from our functions, and maps of ours.
+
+    from sailviz import figures
+    figures.names()
+    figures.draw("stability", "stability.svg")
+
+Needs matplotlib, which comes with the extra `plot`: pip install "sailviz[plot]".
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sailviz.figures.catalogue import CATALOGUE, Entry
+
+__all__ = ["CATALOGUE", "Entry", "FigureError", "draw", "figure", "names", "title"]
+
+FORMATS = ("png", "svg", "pdf")
+
+
+class FigureError(Exception):
+    """A figure that cannot be drawn, in one sentence."""
+
+
+def names() -> list[str]:
+    """Names of all figures, the thesis' first."""
+    return list(CATALOGUE)
+
+
+def title(name: str) -> str:
+    """What a figure shows, in one line."""
+    return _entry(name).title
+
+
+def figure(name: str, style: str = "dark"):
+    """A figure as a matplotlib Figure. style : "dark" or "light"."""
+    entry = _entry(name)
+    try:
+        from sailviz.figures import page
+    except ImportError:
+        raise FigureError('figures need matplotlib: pip install "sailviz[plot]"') from None
+    if style not in page.STYLES:
+        raise FigureError(f"there is no style {style!r}, only {' and '.join(page.STYLES)}")
+    return page.compose(entry, style)
+
+
+def draw(name: str, path, style: str = "dark", dpi: int = 160) -> Path:
+    """Draw a figure into a file, PNG, SVG or PDF by its ending. Returns the path."""
+    path = Path(path)
+    kind = path.suffix.lower().lstrip(".")
+    if kind not in FORMATS:
+        raise FigureError(f"a figure is written as {', '.join(FORMATS)}; {path.name} ends in none of them")
+    drawn = figure(name, style)
+    from sailviz.figures import page
+
+    try:
+        page.save(drawn, path, dpi)
+    except OSError as error:
+        raise FigureError(f"cannot write {path}: {error.strerror.lower()}") from None
+    return path
+
+
+def _entry(name) -> Entry:
+    try:
+        return CATALOGUE[name]
+    except KeyError:
+        raise FigureError(f"there is no figure {name!r}; there are {', '.join(CATALOGUE)}") from None

@@ -1,0 +1,105 @@
+"""The list of figures; no imports, so that it can be printed at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Entry:
+    """title : one line. note : what the reader must know of its origin. size : inches. panels : (rows, columns).
+    module, function : where a function (*axes) draws it, inside sailviz.figures."""
+
+    title: str
+    note: str
+    size: tuple[float, float]
+    panels: tuple[int, int]
+    module: str
+    function: str
+
+
+REDRAWN = "Redrawn from our functions after the thesis' text"
+OURS = "Ours, not in the thesis"
+
+CATALOGUE = {
+    "thesis-3.4": Entry(
+        "Electric sail: cone angle and dimensionless acceleration over the pitch angle",
+        f"{REDRAWN}, (3.43)-(3.45); dotted: the polynomial fit of table 3.2",
+        (11, 5),
+        (1, 2),
+        "sails",
+        "cone_and_acceleration",
+    ),
+    "thesis-3.5": Entry(
+        "What each sail can push outwards and sideways",
+        f"{REDRAWN}, (3.8), (3.21), (3.47)-(3.48); dots every 15° of pitch",
+        (7.5, 7.2),
+        (1, 1),
+        "sails",
+        "thrust_loci",
+    ),
+    "thesis-4.2": Entry(
+        "Displaced orbits that keep the Earth's angular rate: cone angle and characteristic acceleration",
+        "Ours: the thesis does not state the angular rate of its figure 4.2; electric sail, after (4.4)-(4.5)",
+        (12, 5.8),
+        (1, 2),
+        "orbits",
+        "requirements",
+    ),
+    "thesis-4.3": Entry(
+        "Electric sail on a Type II displaced orbit: characteristic acceleration",
+        f"{REDRAWN}, (4.5) and (4.7)",
+        (8, 6),
+        (1, 1),
+        "orbits",
+        "type_ii",
+    ),
+    "thesis-4.4": Entry(
+        "Type II displaced orbits: recent thrust model against the original one",
+        f"{REDRAWN}, (3.33) and (3.39); solid: recent, dashed: original",
+        (8, 6),
+        (1, 1),
+        "orbits",
+        "type_ii_models",
+    ),
+    "stability": Entry(
+        "Which circular displaced orbits of an electric sail stay by themselves",
+        f"{OURS}: linear analysis; growth of a disturbance in one revolution, stable orbits in green",
+        (12, 5.8),
+        (1, 2),
+        "orbits",
+        "stability_map",
+    ),
+    "validity": Entry(
+        "How far the first-order solution carries: largest error in radius, no rectification, circular start",
+        f"{OURS}; white line: 3 %, where a solution calls itself doubtful; grey: no orbit, or out of the map",
+        (13, 5.2),
+        (1, 3),
+        "analytic",
+        "validity_map",
+    ),
+    "rectification": Entry(
+        "What freezing the ellipse anew buys: error after five revolutions over the length of a leg",
+        f"{OURS}; ideal sail, electric sail and constant thrust, circular start",
+        (13, 5.2),
+        (1, 3),
+        "analytic",
+        "rectification",
+    ),
+    "spirals": Entry(
+        "Logarithmic spirals of solar sails: flight-path angle, and the sail that enters one from an ellipse",
+        f"{OURS}, after the equations of motion; ideal film, with the limits of real ones",
+        (12, 5.8),
+        (1, 2),
+        "analytic",
+        "spiral_maps",
+    ),
+    "escape": Entry(
+        "Escape under constant thrust: the thesis' estimates and the motion itself",
+        f"{REDRAWN}, (2.15), (2.21)-(2.22), (2.26)-(2.27); dots: integrated",
+        (12, 5.4),
+        (1, 2),
+        "analytic",
+        "escape",
+    ),
+}

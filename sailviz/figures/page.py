@@ -1,0 +1,138 @@
+"""One look for all figures: colours of the recordings, quiet axes, words where the eye is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib import import_module
+
+import matplotlib
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True)
+class Style:
+    """Colours by role."""
+
+    page: str
+    panel: str
+    ink: str
+    quiet: str
+    grid: str
+    forbidden: str
+    series: tuple[str, ...]
+    good: str
+    bad: str
+    ramp: tuple[str, ...]  # from little to much
+
+
+STYLES = {
+    "dark": Style(
+        "#070a12",
+        "#0c111d",
+        "#e6edf7",
+        "#8b9ab3",
+        "#1b2436",
+        "#232c3d",
+        ("#64beff", "#ffb042", "#62d6a0", "#ec7cbe", "#bea0ff", "#ff7043"),
+        "#2fae7a",
+        "#ff5454",
+        ("#0f1a33", "#1d4a7a", "#3f86b0", "#8fb5a0", "#ffb042", "#ff7043", "#ff5454"),
+    ),
+    "light": Style(
+        "#ffffff",
+        "#ffffff",
+        "#172033",
+        "#5c6b84",
+        "#e4e9f1",
+        "#dfe4ec",
+        ("#1873c2", "#c96f00", "#16875a", "#b23a86", "#6a48c4", "#c8401a"),
+        "#4fbf8f",
+        "#c62828",
+        ("#f4f7fc", "#c5dcf0", "#8fbbdc", "#cdbb6a", "#f5a94a", "#e8663c", "#b8302c"),
+    ),
+}
+
+
+class Pen:
+    """What a drawing function may ask for: the style, and the words that all figures share."""
+
+    def __init__(self, style: Style):
+        self.style = style
+        self.ramp = LinearSegmentedColormap.from_list("ramp", style.ramp).with_extremes(bad=style.forbidden)
+
+    def label(self, axes, x, y, text, color=None, **more):
+        """Words inside a panel, on a patch of the panel's colour so that no line runs through them."""
+        options = {"ha": "center", "va": "center", "fontsize": 9.5} | more
+        pad = {"facecolor": self.style.panel, "edgecolor": "none", "alpha": 0.85, "pad": 1.6}
+        return axes.text(x, y, text, color=color or self.style.ink, bbox=pad, zorder=6, **options)
+
+    def contour_labels(self, axes, lines, form, spots=()):
+        """Numbers on contour lines, nearest to the spots (x, y) if there are any."""
+        axes.clabel(lines, fmt=form, fontsize=8.5, inline=True, inline_spacing=4, manual=list(spots) or False)
+
+    def bar(self, axes, mappable, words, **more):
+        """A slim colour bar."""
+        bar = axes.figure.colorbar(mappable, ax=axes, pad=0.02, fraction=0.045, aspect=32, **more)
+        bar.outline.set_visible(False)
+        bar.ax.tick_params(length=0, labelsize=9)
+        bar.set_label(words, color=self.style.quiet, fontsize=9.5)
+        return bar
+
+
+def compose(entry, style_name: str) -> Figure:
+    """The page: panels, title above, origin below."""
+    style = STYLES[style_name]
+    rc = {
+        "font.family": "DejaVu Sans",
+        "font.size": 10.5,
+        "text.color": style.ink,
+        "axes.facecolor": style.panel,
+        "axes.edgecolor": style.grid,
+        "axes.labelcolor": style.ink,
+        "axes.titlecolor": style.ink,
+        "axes.titlesize": 11,
+        "axes.titleweight": "normal",
+        "axes.titlepad": 9,
+        "axes.grid": True,
+        "axes.axisbelow": True,
+        "grid.color": style.grid,
+        "grid.linewidth": 0.8,
+        "xtick.color": style.quiet,
+        "ytick.color": style.quiet,
+        "xtick.labelcolor": style.quiet,
+        "ytick.labelcolor": style.quiet,
+        "xtick.major.size": 0,
+        "ytick.major.size": 0,
+        "xtick.minor.size": 0,
+        "ytick.minor.size": 0,
+        "lines.linewidth": 1.9,
+        "lines.solid_capstyle": "round",
+        "legend.frameon": False,
+        "legend.fontsize": 9.5,
+        "legend.labelcolor": style.ink,
+        "hatch.linewidth": 0.6,
+        "mathtext.fontset": "dejavusans",
+    }
+    with matplotlib.rc_context(rc):
+        figure = Figure(figsize=entry.size, facecolor=style.page, layout="constrained")
+        FigureCanvasAgg(figure)
+        figure.get_layout_engine().set(w_pad=0.12, h_pad=0.10, wspace=0.04)
+        axes = figure.subplots(*entry.panels, squeeze=False).ravel()
+        for panel in axes:
+            for side in panel.spines.values():
+                side.set_visible(False)
+        figure.suptitle(entry.title, fontsize=13, color=style.ink, fontweight="bold")
+        figure.supxlabel(entry.note, fontsize=8.5, color=style.quiet)
+        drawer = getattr(import_module(f"sailviz.figures.{entry.module}"), entry.function)
+        drawer(Pen(style), *axes)
+        figure.draw_without_rendering()
+    return figure
+
+
+def save(figure, path, dpi):
+    """Write a figure so that drawing it again gives the same file: no dates, no random names, words that stay words."""
+    dates = {".png": {"Software": None}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+    with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "sailviz"}):
+        figure.savefig(path, dpi=dpi, metadata=dates[path.suffix.lower()])

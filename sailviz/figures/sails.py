@@ -1,0 +1,82 @@
+"""Figures of chapter 3: how the sails push."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sailviz.propulsion import electric_sail
+from sailviz.propulsion.solar_sail import FILMS
+
+
+def cone_and_acceleration(pen, left, right):
+    """Fig. 3.4: phi(alpha) and gamma(alpha) of the electric sail."""
+    s = pen.style
+    alpha = np.radians(np.linspace(-90, 90, 721))
+    degrees = np.degrees(alpha)
+    best, most = np.degrees(electric_sail.PITCH_AT_CONE_MAX), np.degrees(electric_sail.CONE_MAX)
+
+    # the polynomial model, by its own force: along and across the Sun line at 1 au
+    inside = np.abs(degrees) <= 70
+    normal = np.column_stack([np.cos(alpha), np.sin(alpha), np.zeros_like(alpha)])[inside]
+    push = electric_sail.acceleration([electric_sail.AU, 0.0, 0.0], normal, 1.0, "polynomial")
+    fit = {"color": s.quiet, "linestyle": (0, (1, 2)), "linewidth": 1.6, "zorder": 3}
+
+    left.plot(degrees, np.degrees(electric_sail.cone_angle(alpha)), color=s.series[0], zorder=4)
+    left.plot(degrees[inside], np.degrees(np.arctan2(push[:, 1], push[:, 0])), **fit)
+    for sign in (-1, 1):
+        left.plot(sign * best, sign * most, "o", color=s.series[1], markersize=6, zorder=5)
+    pen.label(left, 38, 21.6, f"{most:.2f}° at a pitch of {best:.2f}°", s.series[1], fontsize=9.5)
+    left.set(xlabel="pitch angle α [°]", ylabel="cone angle φ [°]", xlim=(-90, 90), ylim=(-24, 24))
+
+    right.plot(degrees, electric_sail.dimensionless_acceleration(alpha), color=s.series[0], zorder=4)
+    right.plot(degrees[inside], np.hypot(push[:, 0], push[:, 1]), **fit)
+    for sign in (-1, 1):
+        right.plot(sign * best, np.sqrt(0.5), "o", color=s.series[1], markersize=6, zorder=5)
+    pen.label(right, 0, 0.5 + 0.035, "edge-on the electric sail still pushes: γ = 1/2", s.quiet)
+    right.set(xlabel="pitch angle α [°]", ylabel="dimensionless acceleration γ", xlim=(-90, 90), ylim=(0.48, 1.02))
+    for axes in (left, right):
+        axes.set_xticks(np.arange(-90, 91, 30))
+
+
+def thrust_loci(pen, axes):
+    """Fig. 3.5: circumferential against radial thrust, pitch as the parameter."""
+    s = pen.style
+    alpha = np.radians(np.linspace(0, 90, 361))
+    dots = np.radians(np.arange(0, 91, 15))
+
+    def sail(film):
+        return lambda a: FILMS[film].components(a)
+
+    def esail(a):
+        return (3 + np.cos(2 * a)) / 4, np.sin(2 * a) / 4  # (3.47), (3.48)
+
+    curves = (
+        ("ideal solar sail", sail("ideal"), s.series[1]),
+        ("optical solar sail (JPL 1978)", sail("jpl-1978"), s.series[3]),
+        ("electric sail", esail, s.series[0]),
+    )
+    for name, push, color in curves:
+        k_r, k_t = push(alpha)
+        axes.plot(k_t, k_r, color=color, label=name, zorder=4)
+        k_r, k_t = push(dots)
+        axes.plot(k_t, k_r, "o", color=color, markersize=4.5, zorder=5)
+    k_r, k_t = esail(dots)
+    for a, x, y in zip(dots[1:-1], k_t[1:], k_r[1:], strict=False):
+        axes.annotate(
+            f"{np.degrees(a):.0f}°",
+            (x, y),
+            (-8, 0),
+            textcoords="offset points",
+            fontsize=8.5,
+            color=s.quiet,
+            ha="right",
+            va="top" if a < 0.7 else "bottom" if a > 0.9 else "center",
+        )
+    axes.set(
+        xlabel="circumferential acceleration / greatest acceleration",
+        ylabel="radial acceleration / greatest acceleration",
+        xlim=(0, 0.5),
+        ylim=(0, 1.03),
+    )
+    axes.set_aspect(0.45)
+    axes.legend(loc="upper right", borderaxespad=1.2)

@@ -1,0 +1,63 @@
+"""Every figure is drawn, in both styles and all formats, with its words inside the page and nothing on top of them."""
+
+from __future__ import annotations
+
+import sys
+from itertools import combinations
+
+import pytest
+
+from sailviz import figures
+
+pytest.importorskip("matplotlib")
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", figures.names())
+def test_words_stay_inside_the_page_and_apart(name):
+    drawn = figures.figure(name)
+    drawn.canvas.draw()
+    renderer, page = drawn.canvas.get_renderer(), drawn.bbox
+    for panel in drawn.axes:
+        words = [w for w in (panel.title, panel.xaxis.label, panel.yaxis.label, *panel.texts) if w.get_text()]
+        boxes = [(word.get_text(), word.get_window_extent(renderer)) for word in words]
+        for text, box in boxes:
+            assert page.x0 <= box.x0, text
+            assert box.x1 <= page.x1, text
+            assert page.y0 <= box.y0, text
+            assert box.y1 <= page.y1, text
+        for (one, a), (other, b) in combinations(boxes, 2):
+            shared = min(a.x1, b.x1) - max(a.x0, b.x0), min(a.y1, b.y1) - max(a.y0, b.y0)
+            assert min(shared) < 2, f"{one!r} runs into {other!r}"
+    for words in (drawn.get_suptitle(), drawn.get_supxlabel()):
+        assert words
+    for artist in (drawn._suptitle, drawn._supxlabel):
+        box = artist.get_window_extent(renderer)
+        assert 0 <= box.x0 < box.x1 <= page.x1
+
+
+@pytest.mark.parametrize("ending", ["png", "svg", "pdf"])
+def test_figures_are_written_and_the_same_every_time(tmp_path, ending):
+    files = [figures.draw("thesis-3.5", tmp_path / f"{i}.{ending}", style="light") for i in range(2)]
+    assert files[0].read_bytes() == files[1].read_bytes()
+    assert len(files[0].read_bytes()) > 5000
+
+
+def test_titles_come_without_matplotlib():
+    assert all(figures.title(name) for name in figures.names())
+    assert figures.names()[:2] == ["thesis-3.4", "thesis-3.5"]
+
+
+def test_wrong_requests_are_refused_in_a_sentence(tmp_path, monkeypatch):
+    with pytest.raises(figures.FigureError, match=r"there are thesis-3\.4"):
+        figures.draw("thesis-9.9", tmp_path / "a.png")
+    with pytest.raises(figures.FigureError, match="png, svg, pdf"):
+        figures.draw("escape", tmp_path / "a.docx")
+    with pytest.raises(figures.FigureError, match="dark and light"):
+        figures.draw("thesis-3.5", tmp_path / "a.png", style="neon")
+    with pytest.raises(figures.FigureError, match="no such file"):
+        figures.draw("thesis-3.5", tmp_path / "nowhere" / "a.png")
+    monkeypatch.setitem(sys.modules, "sailviz.figures.page", None)
+    monkeypatch.delattr(figures, "page", raising=False)
+    with pytest.raises(figures.FigureError, match="sailviz\\[plot\\]"):
+        figures.draw("thesis-3.5", tmp_path / "a.png")

@@ -61,3 +61,31 @@ def test_wrong_requests_are_refused_in_a_sentence(tmp_path, monkeypatch):
     monkeypatch.delattr(figures, "page", raising=False)
     with pytest.raises(figures.FigureError, match="sailviz\\[plot\\]"):
         figures.draw("thesis-3.5", tmp_path / "a.png")
+
+
+def test_figures_come_from_the_shell(tmp_path):
+    from click.testing import CliRunner
+
+    from sailviz.cli import main
+
+    def shell(*words):
+        return CliRunner().invoke(main, ["figure", *words])
+
+    listing = shell("--list")
+    assert listing.exit_code == 0
+    assert all(name in listing.output for name in figures.names())
+    drawn = shell("thesis-4.3", "thesis-4.4", "-o", str(tmp_path / "new"), "--style", "light", "--dpi", "50")
+    assert drawn.exit_code == 0, drawn.output
+    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == ["thesis-4.3.png", "thesis-4.4.png"]
+    single = shell("thesis-4.3", "-q", "-o", str(tmp_path / "one.svg"))
+    assert (single.exit_code, single.output) == (0, "")
+    assert "<svg" in (tmp_path / "one.svg").read_text()
+    for words, sentence in (
+        ((), "--list"),
+        (("thesis-9",), "there are thesis-3.4"),
+        (("escape", "-o", str(tmp_path / "x.docx")), "png, svg, pdf"),
+        (("escape", "spirals", "-o", str(tmp_path / "x.png")), "folder"),
+    ):
+        refused = shell(*words)
+        assert refused.exit_code == 2
+        assert sentence in refused.output

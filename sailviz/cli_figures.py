@@ -1,0 +1,49 @@
+"""The command that draws figures for paper. matplotlib is imported only when something is drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from sailviz.cli_shared import BAD_INPUT
+
+
+@click.command()
+@click.argument("figures", nargs=-1, metavar="NAME...")
+@click.option("--list", "listing", is_flag=True, help="Name the figures there are.")
+@click.option(
+    "-o", "--output", metavar="FILE|DIR", help="PNG, SVG or PDF by its ending; NAME.png in this folder by default."
+)
+@click.option("--style", type=click.Choice(["dark", "light"]), default="dark", show_default=True)
+@click.option("--dpi", type=click.IntRange(30, 1200), default=160, show_default=True, help="Of a PNG.")
+@click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
+def figure(figures, listing, output, style, dpi, quiet):
+    """Draw figures: the thesis' own from our functions, and maps of stability, validity, spirals and escape."""
+    from sailviz.figures import FigureError, draw, names, title
+
+    if listing:
+        for name in names():
+            click.echo(f"{name:<14} {title(name)}")
+        return
+    if not figures:
+        raise click.UsageError("Name a figure, or see them with --list.")
+    target = Path(output) if output else Path()
+    folder = not output or target.is_dir() or not target.suffix
+    if len(figures) > 1 and not folder:
+        raise click.UsageError("-o names one file, but there are several figures: give a folder.")
+    try:
+        for name in figures:
+            title(name)  # a wrong name is found before anything is drawn
+        if folder:
+            target.mkdir(parents=True, exist_ok=True)
+        for name in figures:
+            path = draw(name, target / f"{name}.png" if folder else target, style, dpi)
+            if not quiet:
+                click.echo(f"Drew {path}: {title(name)}")
+    except (FigureError, OSError) as error:
+        click.echo(str(error), err=True)
+        raise click.exceptions.Exit(BAD_INPUT) from None
+
+
+COMMANDS = (figure,)

@@ -98,10 +98,10 @@ def rectification(pen, *panels):
     panels[0].set_ylabel("relative error in r after five revolutions")
     for et, color in cases:
         panels[0].plot([], [], color=color, label=f"transverse thrust {et:g}")
-    panels[0].legend(loc="lower right")
+    panels[0].legend(loc="lower left")
     panels[1].plot([], [], color=s.ink, label="plain")
     panels[1].plot([], [], color=s.ink, linestyle=(0, (4, 2.5)), label="midpoint")
-    panels[1].legend(loc="lower right")
+    panels[1].legend(loc="lower left")
 
 
 def spiral_maps(pen, left, right):
@@ -124,7 +124,7 @@ def spiral_maps(pen, left, right):
     left.set_title("flight-path angle of an ideal sail; lines: largest lightness of each film")
     left.grid(False)
     left.set_facecolor(s.forbidden)
-    left.text(30, 0.95, "too light to spiral", color=s.quiet, fontsize=9.5, ha="center")
+    left.text(30, 0.95, "too light for a spiral", color=s.quiet, fontsize=9.5, ha="center")
     pen.bar(left, image, "flight-path angle γ [°]")
 
     nu, e = np.meshgrid(np.linspace(90, 179.9, 451), np.linspace(0.001, 0.6, 401))

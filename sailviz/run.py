@@ -67,8 +67,9 @@ class Setting:
 
 @dataclass(frozen=True)
 class Attitude:
-    """pitch, cone, clock (n,) rad; normal (n, 3) inertial unit vector: the sail normal away from the Sun, the thrust direction
-    of a thruster, or from tip to satellite along a tether; quaternion (n, 4) xyzw, body to inertial, body z = normal."""
+    """pitch, cone, clock (n,) rad; normal (n, 3) inertial unit vector: the sail normal away from the Sun, the thrust
+    direction of a thruster, or from tip to satellite along a tether; quaternion (n, 4) xyzw, body to inertial, body
+    z = normal."""
 
     pitch: np.ndarray
     cone: np.ndarray
@@ -89,7 +90,8 @@ class Thrust:
 
 @dataclass(frozen=True)
 class Event:
-    """Something that happened at a time between the output rows. time s, state (7,) position m, velocity m/s, mass kg."""
+    """Something that happened at a time between the output rows. time s, state (7,) position m, velocity m/s, mass
+    kg."""
 
     name: str
     time: float

@@ -168,4 +168,35 @@ def _recording_of(source, settings, quiet):
         yield path
 
 
-COMMANDS = (picture,)
+@click.command()
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+@click.option("--no-open", is_flag=True, help="Do not open a browser: print the address only.")
+@click.option("--port", default=0, help="Of the page, e.g. to forward it through ssh; a free one by default.")
+@click.option("--data-port", default=0, help="Of the recordings; a free one by default.")
+def web(files, no_open, port, data_port):
+    """Show recordings in a browser on this machine; works offline. Ctrl-C ends it."""
+    from sailviz.recording.viewers import serve
+
+    def started(url):
+        click.echo(url)
+        click.echo("Ctrl-C ends it.", err=True)
+        if not no_open:
+            import webbrowser
+
+            webbrowser.open(url)
+
+    with collecting_failures() as failures, failures.next():
+        serve(*files, port=port, data_port=data_port, started=started)
+
+
+@click.command()
+@click.argument("files", nargs=-1, required=True, metavar="FILE...")
+def view(files):
+    """Open recordings in the native viewer."""
+    from sailviz.recording.viewers import open_viewer
+
+    with collecting_failures() as failures, failures.next():
+        open_viewer(*files)
+
+
+COMMANDS = (picture, view, web)

@@ -29,6 +29,7 @@ _WHERE = {
     "compare": "sailviz.recording.comparison",
     "Comparison": "sailviz.recording.comparison",
     "export": "sailviz.recording.exporter",
+    "show": "sailviz.recording.notebook",
     "SceneError": "sailviz.errors",
     "PropagationError": "sailviz.errors",
     "RecordingError": "sailviz.errors",

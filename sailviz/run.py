@@ -120,6 +120,16 @@ class Run:
     def __len__(self) -> int:
         return len(self.time)
 
+    def __repr__(self) -> str:
+        from sailviz.summary import span
+
+        return f"<Run {self.setting.title}: {span(self)}>"
+
+    def _repr_html_(self) -> str:
+        from sailviz.summary import html
+
+        return html(self)
+
 
 COLUMNS = (  # fields of a Run that have a row for each time
     "time",

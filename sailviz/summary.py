@@ -10,6 +10,7 @@ import numpy as np
 from sailviz.describe import acceleration, angle, duration, length
 
 MOST_EVENTS = 12
+BEYOND = 1e9  # times the distance: a semi-major axis beyond it is that of a parabola
 LINE = "border-bottom: 1px solid rgba(128, 128, 128, 0.35)"  # seen on white and on black
 CELL = "text-align: left; padding: 2px 14px 2px 0; border: none"
 
@@ -55,11 +56,12 @@ def ends(run) -> list[tuple[str, str, str]]:
     """(quantity, at the first row, at the last row)."""
     e = run.elements
     distance, speed = (np.linalg.norm(vector[[0, -1]], axis=1) for vector in (run.position, run.velocity))
+    farthest = distance.max()
     rows = [
         ("time", run.time, duration),
         (f"distance from the {run.setting.body.name}", distance, length),
         ("speed", speed, lambda value: f"{value / 1e3:.6g} km/s"),
-        ("semi-major axis", e.semi_major_axis, length),
+        ("semi-major axis", e.semi_major_axis, lambda value: length(value) if abs(value) < BEYOND * farthest else "∞"),
         ("eccentricity", e.eccentricity, lambda value: f"{value:.6g}"),
         ("inclination", e.inclination, angle),
         ("ascending node", e.raan, angle),

@@ -43,9 +43,9 @@ set_option = click.option(
 def say_if_compiling(quiet: bool) -> None:
     """Tell a person why the first run takes so long."""
     from sailviz.compiled import is_compiled
-    from sailviz.propagate.dop853 import advance
+    from sailviz.propagate.dop853 import advance_compiled
 
-    if not quiet and not is_compiled(advance):
+    if not quiet and not is_compiled(advance_compiled):
         click.echo("Compiling the propagator for this machine: once, about 20 s.", err=True)
 
 

@@ -35,10 +35,10 @@ def direction_parameters(pitch, clock):
 def orbital_direction(ux, uy, uz, x, y, z, vx, vy, vz, n_r, n_t, n_h):
     """n_r r_hat + n_t t_hat + n_h h_hat in inertial axes; u = r_hat. NaN where the craft has no angular momentum."""
     hx, hy, hz = y * vz - z * vy, z * vx - x * vz, x * vy - y * vx
-    inverse = 1.0 / np.sqrt(hx * hx + hy * hy + hz * hz)
-    hx, hy, hz = hx * inverse, hy * inverse, hz * inverse
     tx, ty, tz = hy * uz - hz * uy, hz * ux - hx * uz, hx * uy - hy * ux
-    return n_r * ux + n_t * tx + n_h * hx, n_r * uy + n_t * ty + n_h * hy, n_r * uz + n_t * tz + n_h * hz
+    inverse = 1.0 / np.sqrt(hx * hx + hy * hy + hz * hz)  # the slowest part, needed last
+    k_t, k_h = n_t * inverse, n_h * inverse
+    return n_r * ux + k_t * tx + k_h * hx, n_r * uy + k_t * ty + k_h * hy, n_r * uz + k_t * tz + k_h * hz
 
 
 @inlined

@@ -17,11 +17,12 @@ import numpy as np
 
 from sailviz.compiled import compiled, inlined
 from sailviz.propagate import dop853_coefficients as c
-from sailviz.propagate.dynamics import MU, SIZE, SURFACE_RADIUS, derivative
-from sailviz.propagate.events import APSIS, END_OF_USE, RADIUS, STOP, measure
+from sailviz.propagate.dynamics import MU, SIZE, SURFACE_RADIUS, Model, derivative
+from sailviz.propagate.events import APSIS, END_OF_USE, RADIUS, STOP, Watch, measure
 
 SAFETY, SHRINK_MOST, GROW_MOST = 0.9, 0.333, 6.0  # of the step-size controller: Hairer's values
 EVENT_SAMPLES = 4  # per step, so that two crossings inside one step are seen
+VECTOR = 16  # rows that one turn of the compiled output loop fills
 MOST_EVENTS = 4096  # recorded between two calls, and then those of one more step
 
 # status of `advance`
@@ -336,8 +337,7 @@ def _find_events(s, watch, t0, h, x_end, mu, w):
     return 2.0, -1
 
 
-@compiled
-def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step):
+def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step) -> int:
     """Integrate until every row of the block is filled, or until something ends the run. Returns a status.
 
     s : Integration, changed in place. model : Model. breaks (k,), factors (k,) : the thrust factor is factors[i]
@@ -347,9 +347,23 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
     an event, or SURFACE, the craft touched the body: rows up to time(s) are filled, in this block and those before;
     UNDERFLOW or NOT_FINITE: the integration broke down at time(s).
     """
+    return advance_compiled(
+        *s, *model, breaks, factors, *watch, t_out, out, float(t_end), float(tolerance), float(largest_step)
+    )
+
+
+@compiled
+def advance_compiled(
+    work, count, sign, event, device, steering, parameters, breaks, factors,
+    kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step,
+):  # fmt: skip
+    """`advance` with its tuples taken apart: at the border of compiled code whole tuples would cost 6 us more."""
+    s = Integration(work, count, sign, event)
+    model = Model(device, steering, parameters)
+    watch = Watch(kinds, levels, senses, actions)
     n, components = t_out.shape[0], out.shape[0]
     mu, surface = model.parameters[MU], model.parameters[SURFACE_RADIUS]
-    k, m, clock, count = s.work, s.work[DENSE:CLOCK], s.work[CLOCK], s.count
+    k, m, clock = work, work[DENSE:CLOCK], work[CLOCK]
     y, w, new = k[Y], k[W], k[NEW]
     watched = len(watch.kind)
     if count[_STARTED] == 0:
@@ -378,7 +392,9 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
             last = row + 1
             while last < n and t_out[last] < t:
                 last += 1
-            _fill(m, clock[_DENSE_START], clock[_DENSE_STEP], t_out, out, row, last)
+            # whole vectors: what is filled beyond the step is overwritten by the next
+            whole = min(n, row + (last - row + VECTOR - 1) // VECTOR * VECTOR)
+            _fill(m, clock[_DENSE_START], clock[_DENSE_STEP], t_out, out, row, whole)
             row = last
             continue
         if t_out[row] == t:

@@ -20,13 +20,12 @@ PITCH_LIMIT = np.radians(60.0)  # of the original and updated models: the thesis
 
 
 @inlined
-def esail_force(ux, uy, uz, inverse, nx, ny, nz, ac, model, pitch_limit):
-    """Acceleration of an E-sail. u = r_hat, inverse = 1/r in 1/m, ac in m/s2 at 1 au. A sail plane has no front: n
-    and -n are the same.
+def esail_force(ux, uy, uz, inverse, nx, ny, nz, c, ac, model, pitch_limit):
+    """Acceleration of an E-sail. u = r_hat, inverse = 1/r in 1/m, c = u . n, ac in m/s2 at 1 au. A sail plane has no
+    front: n and -n are the same.
 
     NaN beyond the pitch limit of the original and updated models, which do not describe the sail there.
     """
-    c = ux * nx + uy * ny + uz * nz
     if c < 0.0:
         c, nx, ny, nz = -c, -nx, -ny, -nz
     near = AU * inverse
@@ -59,9 +58,10 @@ def _accelerations(position, normal, ac, model, pitch_limit):
     out = np.empty_like(position)
     for i in range(len(position)):
         x, y, z = position[i, 0], position[i, 1], position[i, 2]
+        nx, ny, nz = normal[i, 0], normal[i, 1], normal[i, 2]
         r = np.sqrt(x * x + y * y + z * z)
         out[i, 0], out[i, 1], out[i, 2] = esail_force(
-            x / r, y / r, z / r, 1 / r, normal[i, 0], normal[i, 1], normal[i, 2], ac, model, pitch_limit
+            x / r, y / r, z / r, 1 / r, nx, ny, nz, (x * nx + y * ny + z * nz) / r, ac, model, pitch_limit
         )
     return out
 

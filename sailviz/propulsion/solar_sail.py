@@ -82,13 +82,12 @@ def film(name: str) -> Film:
 
 
 @inlined
-def sail_force(ux, uy, uz, inverse, nx, ny, nz, strength, b1, b2, b3):
-    """Acceleration of an optical film. u = r_hat, inverse = 1/r in 1/m; strength = a_c r_E^2 / (b1 + b2 + b3), m3/s2.
-    (3.17), (3.23)"""
-    c = ux * nx + uy * ny + uz * nz
+def sail_force(ux, uy, uz, inverse, nx, ny, nz, c, strength, b1, b2, b3):
+    """Acceleration of an optical film. u = r_hat, inverse = 1/r in 1/m, c = u . n;
+    strength = a_c r_E^2 / (b1 + b2 + b3), m3/s2. (3.17), (3.23)"""
     if c <= 0.0:  # the back of the sail: the models describe the front only
         return 0.0, 0.0, 0.0
-    q = strength * c * inverse * inverse
+    q = strength * inverse * inverse * c
     along_light = q * b1
     along_normal = q * (b2 * c + b3)
     return (
@@ -103,9 +102,10 @@ def _accelerations(position, normal, strength, b1, b2, b3):
     out = np.empty_like(position)
     for i in range(len(position)):
         x, y, z = position[i, 0], position[i, 1], position[i, 2]
+        nx, ny, nz = normal[i, 0], normal[i, 1], normal[i, 2]
         r = np.sqrt(x * x + y * y + z * z)
         out[i, 0], out[i, 1], out[i, 2] = sail_force(
-            x / r, y / r, z / r, 1 / r, normal[i, 0], normal[i, 1], normal[i, 2], strength, b1, b2, b3
+            x / r, y / r, z / r, 1 / r, nx, ny, nz, (x * nx + y * ny + z * nz) / r, strength, b1, b2, b3
         )
     return out
 

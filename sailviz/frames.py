@@ -50,6 +50,7 @@ def body_axes(normal, hint):
     weak = np.linalg.norm(x, axis=-1, keepdims=True) < 1e-9
     spare = np.where(np.abs(z[..., 2:3]) < 0.9, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])
     x = unit(np.where(weak, np.cross(spare, z), x))
+    x = unit(x - np.sum(x * z, axis=-1, keepdims=True) * z)  # once more: a hint almost along z has left few digits
     return np.stack([x, np.cross(z, x), z], axis=-1)
 
 

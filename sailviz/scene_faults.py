@@ -1,4 +1,5 @@
-"""From the keys a person writes to SI fields, and from what pydantic finds wrong to sentences that person can act on."""
+"""From the keys a person writes to SI fields, and from what pydantic finds wrong to sentences that person can act
+on."""
 
 from __future__ import annotations
 
@@ -37,8 +38,8 @@ class _Written:
 
 
 class Places(dict):
-    """Field path -> _Written; `get` yields the path as written. `passed_over`: names of the union members that a table without
-    a kind does not resemble."""
+    """Field path -> _Written; `get` yields the path as written. `passed_over`: names of the union members that a
+    table without a kind does not resemble."""
 
     def __init__(self):
         self.passed_over: set[str] = set()
@@ -253,7 +254,9 @@ def faults_of(errors, places: Places | None = None, model=None) -> list[Fault]:
             continue  # a table where a word was also allowed: what is wrong with the table is said elsewhere
         if error["type"] == "missing":
             dimension = quantities.get(error["loc"][-1])
-            sentence = "is missing." + (f" Write {' or '.join(spelled(error['loc'][-1], dimension))}." if dimension else "")
+            sentence = "is missing." + (
+                f" Write {' or '.join(spelled(error['loc'][-1], dimension))}." if dimension else ""
+            )
         else:
             sentence = _sentence(error, written)
         sentences = grouped.setdefault(path, [])
@@ -281,8 +284,8 @@ def _quantities(model, seen=None) -> dict[str, str]:
 
 
 def _place(error, places: Places) -> tuple[str, _Written]:
-    """Path in the file of a pydantic error. Its location also names union members, which no file has: they are skipped by
-    following only what the converted scene knows."""
+    """Path in the file of a pydantic error. Its location also names union members, which no file has: they are
+    skipped by following only what the converted scene knows."""
     path = ""
     known = _Written("")
     location = error["loc"]
@@ -314,7 +317,10 @@ def locate(faults: list[Fault], text: str) -> list[Fault]:
     lines = _lines(text)
     found, paths = [], []
     for fault in faults:
-        if any(fault.where == p or fault.where.startswith((p + ".", p + "[")) for p in paths) and "missing" in fault.what:
+        if (
+            any(fault.where == p or fault.where.startswith((p + ".", p + "[")) for p in paths)
+            and "missing" in fault.what
+        ):
             continue
         paths.append(fault.where)
         where = fault.where

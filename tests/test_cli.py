@@ -151,7 +151,14 @@ def test_check_imports_neither_rerun_nor_numba_nor_scipy(tmp_path):
 def test_ctrl_c_leaves_a_recording_that_is_valid_up_to_there(tmp_path):
     from sailviz.recording import read
 
-    words = ["run", "deorbit/debris-260kg", "--set", "propagation.duration_yr=40", "--set", "propagation.outputs=2000000"]
+    words = [
+        "run",
+        "deorbit/debris-260kg",
+        "--set",
+        "propagation.duration_yr=40",
+        "--set",
+        "propagation.outputs=2000000",
+    ]
     process = subprocess.Popen(
         [sys.executable, "-m", "sailviz", *words], cwd=tmp_path, stderr=subprocess.PIPE, text=True
     )

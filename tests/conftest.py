@@ -13,7 +13,6 @@ from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
 from sailviz.shipped import shipped_scenes
 
-
 # The same examples every time: a run of the tests must not depend on luck, nor on how busy the machine is. Look further
 # with `pytest --hypothesis-profile=default`.
 settings.register_profile("repeatable", derandomize=True, deadline=None)

@@ -5,10 +5,10 @@ import signal
 import subprocess
 import sys
 import time
+import tomllib
 
 import jsonschema
 import pytest
-import tomllib
 from click.testing import CliRunner
 
 from sailviz.cli import main

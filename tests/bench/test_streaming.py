@@ -47,7 +47,7 @@ def test_a_million_rows_stream_with_flat_memory(tmp_path, record_property, capsy
     large = stream(1_000_000, tmp_path / "large.rrd")
     rate = 1_000_000 / large["recording_s"]
     with capsys.disabled():
-        print(f"\n1e6 rows: {rate:,.0f} rows/s recorded, simulated in {large['simulating_s']:.2f} s of CPU, peak ", end="")
+        print(f"\n1e6 rows: {rate:,.0f} rows/s, simulated in {large['simulating_s']:.2f} s of CPU, peak ", end="")
         print(f"{large['peak_MB']:.0f} MB against {small['peak_MB']:.0f} MB for 3,000 rows")
     assert large["peak_MB"] - small["peak_MB"] < 200
     assert rate >= 200_000

@@ -1,6 +1,6 @@
 """An orbit of one's own wish: what must the sail do to hold it, and does it?
 
-Here the elevation sways between 7 and 9 degrees once in two revolutions. The design gives pitch, clock angle and voltage over
+Here the elevation sways between 7 and 9 degrees once in two revolutions. The design gives pitch, clock and voltage over
 time; a scene with these as a steering table flies it. Run it from anywhere: python prescribed_track.py [track.rrd]
 """
 

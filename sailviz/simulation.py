@@ -44,7 +44,7 @@ from sailviz.scene import HELD_STARTS, Scene
 if TYPE_CHECKING:
     from sailviz.first_order import FirstOrder
 
-BLOCK_ROWS = 8192
+BLOCK_ROWS = 16_384  # a recording takes this many at once
 DEFAULT_OUTPUTS = 1000
 BODIES = {
     "sun": Body("Sun", MU_SUN, RADIUS_SUN),

@@ -9,12 +9,6 @@ The verbs are loaded on first use, so that `import sailviz` costs next to nothin
 """
 
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
-
-try:
-    __version__ = version("sailviz")
-except PackageNotFoundError:  # run from a folder that was never installed
-    __version__ = "0+unknown"
 
 _WHERE = {
     "load_scene": "sailviz.scene",
@@ -37,7 +31,18 @@ _WHERE = {
 __all__ = [*_WHERE, "__version__"]
 
 
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("sailviz")
+    except PackageNotFoundError:  # run from a folder that was never installed
+        return "0+unknown"
+
+
 def __getattr__(name):
+    if name == "__version__":
+        return _version()
     if name not in _WHERE:
         raise AttributeError(f"module 'sailviz' has no attribute {name!r}")
     return getattr(import_module(_WHERE[name]), name)

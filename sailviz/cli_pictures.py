@@ -101,11 +101,15 @@ def _outputs(sources, output, film) -> list[Path]:
         twice = next((file.name for file in files if files.count(file) > 1), None)
         if twice:
             raise RecordingError(f"two pictures would have the same name, {twice}: take them one by one with -o")
-    try:
-        files[0].parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RecordingError(f"cannot make the folder {files[0].parent}: {error.strerror.lower()}") from None
+    _make(files[0].parent)
     return files
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RecordingError(f"cannot make the folder {folder}: {error.strerror.lower()}") from None
 
 
 def _shoot(path, out, view, at, size, bare):
@@ -199,4 +203,20 @@ def view(files):
         open_viewer(*files)
 
 
-COMMANDS = (picture, view, web)
+@click.command(hidden=True)
+@click.argument("scenes", nargs=-1, metavar="[SCENE...]")
+@click.option("-o", "--output", default="assets/readme", show_default=True, metavar="DIR")
+@click.option("-q", "--quiet", is_flag=True, help="No progress bar.")
+def gallery(scenes, output, quiet):
+    """Take the pictures of the README, one of every shipped scene, and print the table that shows them."""
+    from sailviz.recording.gallery import gallery as take
+    from sailviz.recording.gallery import markdown
+
+    say_if_compiling(quiet)
+    with collecting_failures() as failures, failures.next(), progress_bar("Gallery", quiet) as progress:
+        folder = Path(output)
+        _make(folder)
+        click.echo(markdown(take(folder, scenes, progress=progress)))
+
+
+COMMANDS = (picture, view, web, gallery)

@@ -122,11 +122,25 @@ def gif(frames: list[Path], out: Path, fps: float) -> None:
     sheet = Image.new("RGB", (width, height * len(chosen)))
     for row, frame in enumerate(chosen):
         sheet.paste(frame, (0, row * height))
-    palette = sheet.quantize(256, method=Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    palette = palette_of(sheet, 256)
     images = [image(frame).quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     images[0].save(
         out, "GIF", save_all=True, append_images=images[1:], duration=round(1000 / fps), loop=0, optimize=False
     )
+
+
+def palette_of(picture, colours: int):
+    """An image whose palette serves a picture: most colours where most pixels are, the others spread over all that
+    occur, so that a thin green arrow in a dark sky stays green.
+    """
+    from PIL import Image
+
+    spread = colours // 3
+    parts = ((colours - spread, Image.Quantize.MEDIANCUT), (spread, Image.Quantize.MAXCOVERAGE))
+    chosen = [value for count, method in parts for value in picture.quantize(count, method=method).getpalette()]
+    holder = Image.new("P", (1, 1))
+    holder.putpalette(chosen[: 3 * colours])
+    return holder
 
 
 def mp4(frames: list[Path], out: Path, fps: float) -> None:

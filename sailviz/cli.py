@@ -162,13 +162,13 @@ def _run_one(name, values, sinks, quiet, failures):
                     recorder.add(first)
                     judge.add(first)
                     rows, ended = rows + len(first), first.ended
-                    seconds = float(first.time[-1])
                     first = next(blocks, None)
             except (KeyboardInterrupt, PropagationError):
                 recorder.__exit__(*sys.exc_info())  # finish the file with what there is
-                _say_unfinished(recorder, seconds)
+                _say_unfinished(recorder)
                 raise
             recorded = recorder.finish()
+            seconds = recorder.time
     verdicts = judge.verdicts()
     failures.summary(
         {
@@ -222,11 +222,11 @@ def _rerun() -> str:
     return os.path.relpath(beside) if Path.cwd() in beside.parents else str(beside)
 
 
-def _say_unfinished(recorder, seconds):
+def _say_unfinished(recorder):
     from sailviz.describe import duration
 
     for path in recorder.recorded.paths if recorder.recorded else ():
-        click.echo(f"Unfinished: {path} is valid up to {duration(seconds)} and says so.", err=True)
+        click.echo(f"Unfinished: {path} is valid up to {duration(recorder.time)} and says so.", err=True)
 
 
 if __name__ == "__main__":

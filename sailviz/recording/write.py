@@ -99,6 +99,11 @@ class Recorder:
                 self._abandon()  # the first error is the one to tell
         return False
 
+    @property
+    def time(self) -> float:
+        """Time of the last row that was written, s."""
+        return 0.0 if self._last is None else float(self._last.time[0])
+
     def add(self, run: Run) -> None:
         """Append the next block. Raises RecordingError where it does not follow the one before, or lasts over 292
         years.

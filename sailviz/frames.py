@@ -30,7 +30,8 @@ def rtn(position, velocity):
     east = np.where(np.linalg.norm(east, axis=-1, keepdims=True) > 1e-12, east, [0.0, 1.0, 0.0])
     planeless = np.linalg.norm(h, axis=-1, keepdims=True) <= 1e-14 * scale
     h_hat = unit(np.where(planeless, np.cross(r_hat, east), h))
-    return np.stack([r_hat, np.cross(h_hat, r_hat), h_hat], axis=-1)
+    t_hat = unit(np.cross(h_hat, r_hat))  # of length one, and h_hat again: on a nearly radial line h has few digits
+    return np.stack([r_hat, t_hat, np.cross(r_hat, t_hat)], axis=-1)
 
 
 def to_frame(axes, vectors):

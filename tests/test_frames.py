@@ -44,6 +44,12 @@ def test_on_the_pole_without_a_plane_there_still_is_a_frame():
     assert np.linalg.det(axes) == pytest.approx(1, abs=1e-15)
 
 
+def test_frame_of_a_nearly_radial_motion_is_orthonormal():
+    """Position and velocity 1e-5 rad apart: eleven digits of h are left, its direction is made perpendicular again."""
+    axes = frames.rtn((-1.0, -0.99999, 1.0), (-0.99999, -1.0, 1.0))
+    assert axes.T @ axes == pytest.approx(np.eye(3), abs=1e-15)
+
+
 @given(VECTOR, VECTOR, VECTOR)
 def test_to_a_frame_and_back_is_where_it_began(position, velocity, vector):
     axes = frames.rtn(position, velocity)

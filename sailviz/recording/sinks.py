@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import socket
 import sys
+import webbrowser
 from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import quote, urlsplit
@@ -167,7 +168,9 @@ def open_sinks(stream: rr.RecordingStream, sinks: list):
     stream.set_sinks(*targets)
     for sink in sinks:
         if isinstance(sink, Web):
-            rr.serve_web_viewer(web_port=sink.port, open_browser=sink.open_browser, connect_to=server.uri)
+            rr.serve_web_viewer(web_port=sink.port, open_browser=False, connect_to=server.uri)
+            if sink.open_browser:
+                webbrowser.open(web_address(sink, server))  # rerun's own address would open in the light theme
     return server
 
 
@@ -180,4 +183,4 @@ def viewer_binary() -> str:
 
 def web_address(sink: Web, server) -> str:
     """What to type into a browser to see the recording."""
-    return f"http://127.0.0.1:{sink.port}/?url={quote(server.uri, safe='')}"
+    return f"http://127.0.0.1:{sink.port}/?url={quote(server.uri, safe='')}&theme=dark"

@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from sailviz.constants import AU, MU_SUN
 from sailviz.design.displaced_stability import Stability, largest_stable_elevation, smallest_stable_rate, stability
@@ -119,6 +118,8 @@ def lagrange_point(radius, device="electric-sail", *, planet_mu=0.0, planet_orbi
     Re-derived. Neglected: the Sun's own fall towards the planet, mu_p (1 - r / r_p) / r_p^2, under 2e-7 mm/s2 within
     0.01 au of the Earth; the orbit's eccentricity. Useful outside the planet's sphere of influence.
     """
+    from scipy.optimize import brentq  # half a second to import, seldom needed
+
     r, orbit, mu = np.broadcast_arrays(*(np.asarray(x, dtype=float) for x in (radius, planet_orbit, planet_mu)))
 
     def outward(r, orbit=orbit, mu=mu):

@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from sailviz.constants import AU
 from sailviz.design.force_shape import force_shape
@@ -89,6 +88,8 @@ def largest_stable_elevation(clock="orbital", cone_limit=None) -> tuple[float, f
     cone_limit : rad, the electric sail's own by default. Feasible is w <= T / (s c + T c^2), T = tan(cone_limit). Under
     the law "orbital" the wedge closes exactly at the largest cone angle.
     """
+    from scipy.optimize import brentq  # half a second to import, seldom needed
+
     t = force_shape("electric-sail").slope_limit() if cone_limit is None else np.tan(cone_limit)
 
     def largest(psi):

@@ -6,7 +6,6 @@ Source: thesis, section 4.3, not read; re-derived from spherical kinematics and 
 from __future__ import annotations
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 
 from sailviz.constants import AU, MU_SUN
 from sailviz.design.force_shape import force_shape
@@ -115,6 +114,8 @@ def sampled_track(time, position, device="electric-sail") -> Track:
     Differentiated as a spline of degree 7: with 100 points a revolution the thrust is good to about 1e-8, less at the
     ends (1e-4). On the z axis the azimuth, and with it the result, is undefined.
     """
+    from scipy.interpolate import make_interp_spline  # half a second to import, seldom needed
+
     time, position = np.asarray(time, dtype=float), np.asarray(position, dtype=float) / AU
     if time.ndim != 1 or len(time) < 8 or position.shape != (len(time), 3) or not np.all(np.diff(time) > 0):
         raise ValueError("a sampled track needs eight increasing times (n,) or more, and positions (n, 3)")

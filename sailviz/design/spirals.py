@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 
 from sailviz.design.force_shape import force_shape
 from sailviz.propulsion.solar_sail import FILMS, Film
@@ -136,6 +135,8 @@ def insertion(eccentricity, true_anomaly, film: Film | str = "ideal") -> Inserti
     tan(gamma) = e sin(nu) / (1 + e cos(nu)); over sqrt(2) it is the steep one of the two spirals of this sail.
     Feasible where the cone angle atan2(eps_t, eps_r) is within the film's reach. Re-derived.
     """
+    from scipy.optimize import brentq  # half a second to import, seldom needed
+
     film = FILMS[film] if isinstance(film, str) else film
     shape = force_shape(film)
     e, nu = np.broadcast_arrays(np.asarray(eccentricity, dtype=float), np.asarray(true_anomaly, dtype=float))

@@ -66,10 +66,10 @@ def _between(p, a, b, column, w, span, interpolation):
 
 
 @inlined
-def table_row(t, p, first, interpolation):
-    """Pitch rad, clock rad and throttle at time t s from the rows of COLUMNS numbers that fill p from place `first`
+def table_row(t, p, first, rows, interpolation):
+    """Pitch rad, clock rad and throttle at time t s from rows of COLUMNS numbers that stand in p from place `first`
     on; the first and the last row hold before and after."""
-    low, high = 0, (len(p) - first) // COLUMNS - 1
+    low, high = 0, rows - 1
     t = min(max(t, p[first]), p[first + COLUMNS * high])
     while high - low > 1:
         middle = (low + high) // 2

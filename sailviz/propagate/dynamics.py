@@ -33,9 +33,10 @@ STEERING = 4  # three numbers of the steering law
 DEVICE = 8  # up to five numbers of the device
 PLASMA = 14  # profile, reference altitude m, value (N/m or 1/m3), scale height m, ion mass kg, sphere radius m
 USER_STEERING, USER_FORCE = 20, 21  # addresses of C functions, 0 for none; exact, since addresses stay below 2^53
-INTERPOLATION = 22  # of the steering table
+INTERPOLATION, ROWS = 22, 23  # of the steering table, which begins at TABLE
 THIRD_BODY = 24  # mu m3/s2 (0 for none), radius m, angular rate rad/s and initial azimuth rad of its circular orbit
-TABLE = 28
+AIR = 28  # kind (0 for none), Cd A m2, then of an exponential profile: reference radius m, density kg/m3, scale height m
+TABLE = 80
 
 
 class Model(NamedTuple):
@@ -43,7 +44,7 @@ class Model(NamedTuple):
 
     device: int
     steering: int
-    parameters: np.ndarray  # (TABLE + 7 k,), the k rows of the steering table at its end
+    parameters: np.ndarray  # (TABLE + 7 k,), the k rows of the steering table from TABLE on
 
 
 def model(
@@ -60,6 +61,7 @@ def model(
     rotation=0.0,
     plasma=(),
     third_body=(),
+    air=(),
     user_steering=0,
     user_force=0,
 ) -> Model:
@@ -68,10 +70,12 @@ def model(
     row = np.zeros(TABLE)
     row[MU], row[J2_STRENGTH], row[SURFACE_RADIUS], row[ROTATION] = mu, j2_strength, surface_radius, rotation
     parts = ((STEERING, steering_parameters), (DEVICE, device_parameters), (PLASMA, plasma), (THIRD_BODY, third_body))
+    parts += ((AIR, air),)
     for start, values in parts:
         row[start : start + len(values)] = values
     row[USER_STEERING], row[USER_FORCE], row[INTERPOLATION] = user_steering, user_force, interpolation
     if table is not None:
+        row[ROWS] = len(table)
         row = np.concatenate([row, np.asarray(table, dtype=float).ravel()])
     return Model(int(device), int(steering), row)
 
@@ -147,7 +151,7 @@ def direction(t, x, y, z, vx, vy, vz, m, ux, uy, uz, model):
         nx, ny, nz = law.orbital_direction(ux, uy, uz, x, y, z, vx, vy, vz, 0.0, 1.0, 0.0)
         return nx, ny, nz, 0.0
     if kind == law.TABLE_ORBITAL or kind == law.TABLE_MERIDIAN:
-        alpha, delta, _ = law.table_row(t, p, TABLE, p[INTERPOLATION])
+        alpha, delta, _ = law.table_row(t, p, TABLE, int(p[ROWS]), p[INTERPOLATION])
         n_r, n_t, n_h = np.cos(alpha), np.sin(alpha) * np.sin(delta), np.sin(alpha) * np.cos(delta)
         if kind == law.TABLE_MERIDIAN:
             nx, ny, nz = law.meridian_direction(ux, uy, uz, n_r, n_t, n_h)
@@ -192,7 +196,7 @@ def device_acceleration(t, x, y, z, vx, vy, vz, m, inverse, factor, model):
     both, and so does the throttle of a steering table."""
     p = model.parameters
     if model.steering == law.TABLE_ORBITAL or model.steering == law.TABLE_MERIDIAN:
-        factor = factor * law.table_row(t, p, TABLE, p[INTERPOLATION])[2]
+        factor = factor * law.table_row(t, p, TABLE, int(p[ROWS]), p[INTERPOLATION])[2]
     ux, uy, uz = x * inverse, y * inverse, z * inverse
     nx, ny, nz, c = direction(t, x, y, z, vx, vy, vz, m, ux, uy, uz, model)
     kind = model.device
@@ -223,6 +227,17 @@ def third_body_gravity(t, x, y, z, p):
     return k * dx, k * dy, -k * z
 
 
+@inlined
+def air_drag(x, y, z, vx, vy, vz, m, r, model):
+    """Drag of the neutral atmosphere on the craft, m/s2, against its velocity through air that turns with the body."""
+    p = model.parameters
+    w = p[ROTATION]
+    qx, qy, qz = vx + w * y, vy - w * x, vz
+    density = exponential(r, p[AIR + 2], p[AIR + 3], p[AIR + 4])
+    k = -0.5 * density * p[AIR + 1] / m * np.sqrt(qx * qx + qy * qy + qz * qz)
+    return k * qx, k * qy, k * qz
+
+
 @called
 def derivative(t, y, factor, model, out):
     """out (7,) = dy/dt: (2.1)-(2.3). factor multiplies the device's thrust; 0 is off."""
@@ -233,6 +248,9 @@ def derivative(t, y, factor, model, out):
     m_dot = 0.0
     if p[THIRD_BODY] != 0.0:
         bx, by, bz = third_body_gravity(t, x, yy, z, p)
+        ax, ay, az = ax + bx, ay + by, az + bz
+    if p[AIR] != 0.0:
+        bx, by, bz = air_drag(x, yy, z, vx, vy, vz, m, 1.0 / inverse, model)
         ax, ay, az = ax + bx, ay + by, az + bz
     if factor != 0.0 and model.device != NO_DEVICE:
         bx, by, bz, m_dot = device_acceleration(t, x, yy, z, vx, vy, vz, m, inverse, factor, model)

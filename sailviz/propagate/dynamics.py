@@ -35,7 +35,9 @@ PLASMA = 14  # profile, reference altitude m, value (N/m or 1/m3), scale height 
 USER_STEERING, USER_FORCE = 20, 21  # addresses of C functions, 0 for none; exact, since addresses stay below 2^53
 INTERPOLATION, ROWS = 22, 23  # of the steering table, which begins at TABLE
 THIRD_BODY = 24  # mu m3/s2 (0 for none), radius m, angular rate rad/s and initial azimuth rad of its circular orbit
-AIR = 28  # kind (0 for none), Cd A m2, then of an exponential profile: reference radius m, density kg/m3, scale height m
+AIR = (
+    28  # kind (0 for none), Cd A m2, then of an exponential profile: reference radius m, density kg/m3, scale height m
+)
 TABLE = 80
 
 

@@ -1,0 +1,426 @@
+"""Scene -> Plan: what a scene's words mean to the propagator.
+
+A Model, an initial state, a schedule of thrust factors and a list of events; nothing is propagated here.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sailviz import elements as orbital
+from sailviz import ephemeris, frames
+from sailviz import steering as law
+from sailviz.constants import (
+    AU,
+    J2_EARTH,
+    MU_EARTH,
+    MU_SUN,
+    RADIUS_EARTH,
+    RADIUS_SUN,
+    ROTATION_EARTH,
+    STANDARD_GRAVITY,
+)
+from sailviz.design import displaced, spirals
+from sailviz.design.holding import Track
+from sailviz.environment import ionosphere, solar_wind
+from sailviz.errors import Fault, SceneError
+from sailviz.propagate import dynamics
+from sailviz.propagate import events as happening
+from sailviz.propulsion import electric_sail
+from sailviz.propulsion.solar_sail import FILMS, Film
+from sailviz.run import Body
+from sailviz.scene import Scene
+from sailviz.scene_sections import HELD_STARTS
+
+if TYPE_CHECKING:
+    from sailviz.first_order import FirstOrder
+
+BODIES = {
+    "sun": Body("Sun", MU_SUN, RADIUS_SUN),
+    "earth": Body("Earth", MU_EARTH, RADIUS_EARTH),
+}
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A scene as the propagator sees it."""
+
+    scene: Scene
+    body: Body
+    position: np.ndarray  # (3,) m
+    velocity: np.ndarray  # (3,) m/s
+    mass: float  # kg
+    model: dynamics.Model
+    breaks: np.ndarray  # (k,) s, where the thrust factor or its table has a kink
+    factors: np.ndarray  # (k,) thrust factor from each break on
+    pressure: np.ndarray | None  # (k,) Pa at 1 au from each break on, where the wind is random
+    switches: tuple[tuple[float, str], ...]  # (time s, "thrust on" | "thrust off")
+    watch: happening.Watch
+    names: tuple[str, ...]  # of the watched events
+    design: object | None  # the design's result for starts that ask for one
+    approximations: dict[str, FirstOrder]
+    keep: tuple  # compiled user functions must live as long as the plan
+    identity: str
+
+
+def plan(scene: Scene, steering=None, force=None) -> Plan:
+    """What a scene means. SceneError if it asks for something infeasible, TypeError for a bad user function."""
+    body = BODIES[scene.body] if isinstance(scene.body, str) else Body(*_custom_body(scene))
+    design = _design(scene)
+    position, velocity = _initial_state(scene, body, design)
+    device, device_parameters = _device(scene, design)
+    law_id, law_parameters, table, interpolation = _steering(scene, design)
+    keep = []
+    user_steering = user_force = 0
+    if steering is not None:
+        user_steering, handle = dynamics.user_address(steering, "steering")
+        law_id, law_parameters, table, interpolation = law.USER, (), None, law.LINEAR
+        keep.append(handle)
+    if force is not None:
+        user_force, handle = dynamics.user_address(force, "force")
+        keep.append(handle)
+    breaks, factors, pressure, switches = _schedule(scene, table)
+    names, watch = _watched(scene, body)
+    earth = scene.body == "earth"
+    model = dynamics.model(
+        body.mu,
+        device=device,
+        device_parameters=device_parameters,
+        steering=law_id,
+        steering_parameters=law_parameters,
+        interpolation=interpolation,
+        table=table,
+        j2_strength=1.5 * J2_EARTH * MU_EARTH * RADIUS_EARTH**2 if scene.environment.j2 else 0.0,
+        surface_radius=body.radius,
+        rotation=ROTATION_EARTH if earth and scene.environment.corotation else 0.0,
+        plasma=_plasma(scene, body),
+        third_body=third_body(scene),
+        user_steering=user_steering,
+        user_force=user_force,
+    )
+    return Plan(
+        scene,
+        body,
+        position,
+        velocity,
+        scene.device.mass or 1.0,
+        model,
+        breaks,
+        factors,
+        pressure,
+        switches,
+        watch,
+        names,
+        design,
+        _approximations(scene, body, position, velocity, design),
+        tuple(keep),
+        _identity(scene, steering=steering, force=force),
+    )
+
+
+def _custom_body(scene):
+    return scene.body.name, scene.body.mu, scene.body.radius
+
+
+def _identity(scene, **functions) -> str:
+    """Hash of the scene and of the user's functions, each under the name of its part."""
+    digest = hashlib.sha256(scene.identity().encode())
+    for part, function in functions.items():
+        if function is not None:
+            digest.update(f"{part} {_written(function)}".encode())
+    return digest.hexdigest()[:16]
+
+
+def _written(function, seen=()) -> str:
+    """What a user's function is made of: its code, its constants and what it takes from around it, functions too."""
+    function = getattr(function, "py_func", getattr(function, "__wrapped__", function))
+    code = getattr(function, "__code__", None)
+    if isinstance(function, (int, float, complex, str, tuple, np.ndarray)):
+        return repr(np.asarray(function).tolist())
+    if code is None:
+        return type(function).__name__
+    if code in seen:
+        return code.co_name
+    around = {name: function.__globals__[name] for name in code.co_names if name in function.__globals__}
+    around |= dict(zip(code.co_freevars, (cell.cell_contents for cell in function.__closure__ or ()), strict=True))
+    names = [f"{name} = {_written(value, (*seen, code))}" for name, value in around.items()]
+    return f"{code.co_code.hex()} {code.co_consts} {code.co_names} {names}"
+
+
+def _film(scene) -> Film:
+    film = scene.device.film
+    if isinstance(film, str):
+        return FILMS[film]
+    values = film.model_dump()
+    return Film(**values) if "b1" in values else Film.from_optics(**values)
+
+
+def _design(scene):
+    """The closed form behind a start "on the designed orbit"; SceneError where it does not exist."""
+    start = scene.start
+    if start.kind in HELD_STARTS:
+        device = "electric-sail" if scene.device.kind == "electric-sail" else _film(scene)
+        third = scene.environment.third_body
+        if start.kind == "displaced":
+            found = displaced.circular(start.radius, start.elevation, start.rate_ratio, device)
+        elif start.kind == "heliostationary":
+            found = displaced.heliostationary(start.radius, device)
+        elif start.kind == "lagrange-point":
+            planet = {} if third is None else {"planet_mu": third.mu, "planet_orbit": third.radius}
+            found = displaced.lagrange_point(start.radius, device, **planet)
+        else:
+            return _track(scene, device)
+    elif start.kind == "spiral":
+        found = spirals.logarithmic(
+            _film(scene).lightness(sail_strength(scene, None)),
+            scene.steering.pitch * np.sign(np.sin(scene.steering.clock)),
+            _film(scene),
+        )
+    else:
+        return None
+    if not found.feasible:
+        raise SceneError([Fault("start", f"this orbit is infeasible: {found.reason}.")], scene.source)
+    return found
+
+
+TRACK_POINTS = 720  # of the steering table, per revolution: its cubic is then good to 1e-10
+
+
+def _track(scene, device):
+    """The Track of an elliptic displaced orbit over the whole run, at equal steps of true anomaly."""
+    from sailviz.design import displaced_tracks
+
+    start = scene.start
+    if start.kind == "planet-following":
+        a, e = start.semi_major_axis, start.eccentricity
+        if start.planet is not None:
+            a, e, *_ = (float(value[0]) for value in ephemeris.planet_elements(start.planet.capitalize(), 0.0))
+        period = 2 * np.pi * np.sqrt(a**3 / MU_SUN)
+    else:
+        e = start.eccentricity
+        period = 2 * np.pi * np.sqrt((start.semi_latus_rectum / (1 - e * e)) ** 3 / (start.mu_ratio * MU_SUN))
+    turns = scene.propagation.duration / period + 1.1
+    anomaly = start.true_anomaly + 2 * np.pi * np.arange(int(turns * TRACK_POINTS)) / TRACK_POINTS
+
+    def track(nu):
+        if start.kind == "planet-following":
+            return displaced_tracks.planet_following(a, e, nu, start.elevation, start.radius_ratio, device)
+        return displaced_tracks.flat_ellipse(start.semi_latus_rectum, e, nu, start.height, start.mu_ratio, device)
+
+    found = track(anomaly)
+    if not np.all(found.feasible):
+        reason = track(anomaly[np.argmin(found.feasible)]).reason
+        raise SceneError([Fault("start", f"this orbit is infeasible: {reason}.")], scene.source)
+    return found
+
+
+def _initial_state(scene, body, design):
+    start = scene.start
+    if start.kind in HELD_STARTS:
+        if start.kind == "displaced":
+            position, velocity = displaced.state(start.radius, start.elevation, start.rate_ratio, start.azimuth)
+        elif start.kind == "heliostationary":
+            position, velocity = displaced.state(start.radius, start.elevation, 0.0, start.azimuth)
+        elif start.kind == "lagrange-point":
+            third = scene.environment.third_body
+            orbit, azimuth = (AU, 0.0) if third is None else (third.radius, third.azimuth)
+            position, velocity = displaced.state(start.radius, 0.0, (start.radius / orbit) ** 1.5, azimuth)
+        else:
+            position, velocity = design.position[0], design.velocity[0]
+        return position + start.position_offset, velocity + start.velocity_offset
+    if start.kind == "cartesian":
+        return np.array(start.position), np.array(start.velocity)
+    if start.kind == "spiral":
+        return design.state(start.radius, start.azimuth, body.mu)
+    if start.kind == "circular":
+        radius = start.radius if start.radius is not None else body.radius + start.altitude
+        shape = (radius, 0.0, start.inclination, start.raan, 0.0, start.argument_of_latitude)
+    else:
+        shape = (
+            start.semi_major_axis,
+            start.eccentricity,
+            start.inclination,
+            start.raan,
+            start.argument,
+            start.true_anomaly,
+        )
+    position, velocity = orbital.state(*shape, body.mu)
+    if not np.isfinite(position).all() or np.linalg.norm(position) <= body.radius:
+        raise SceneError([Fault("start", f"this point is not above the surface of the {body.name}.")], scene.source)
+    return position, velocity
+
+
+def sail_strength(scene, design) -> float:
+    """Characteristic acceleration, m/s2, of either sail."""
+    device = scene.device
+    if device.characteristic_acceleration == "as designed":
+        return float(np.max(design.characteristic_acceleration))  # of a track: at full throttle
+    if device.characteristic_acceleration is not None:
+        return device.characteristic_acceleration
+    if device.kind == "electric-sail":
+        return float(
+            electric_sail.characteristic_acceleration(
+                device.tethers,
+                device.tether_length,
+                device.voltage,
+                device.mass,
+                device.wind_pressure,
+                device.wind_potential,
+            )
+        )
+    return _film(scene).characteristic_acceleration(
+        lightness=device.lightness_number, area=device.area, mass=device.mass
+    )
+
+
+def _device(scene, design):
+    """(id, parameters) for the right-hand side."""
+    device = scene.device
+    if device.kind == "solar-sail":
+        film = _film(scene)
+        strength = sail_strength(scene, design) * AU**2 / film.total
+        return dynamics.SOLAR_SAIL, (strength, film.b1, film.b2, film.b3)
+    if device.kind == "electric-sail":
+        model = electric_sail.MODELS[device.model]
+        return dynamics.ELECTRIC_SAIL, (sail_strength(scene, design), model, device.pitch_limit)
+    if device.kind == "plasma-brake":
+        return dynamics.PLASMA_BRAKE, (device.tether_length, device.voltage, device.wire_radius)
+    if device.kind == "thruster":
+        size = device.thrust if device.thrust is not None else device.acceleration
+        exhaust = device.specific_impulse
+        inverse = 0.0 if exhaust is None else 1.0 / (STANDARD_GRAVITY * exhaust)
+        return dynamics.THRUSTER, (size, float(device.thrust is not None), inverse)
+    return dynamics.NO_DEVICE, ()
+
+
+def _steering(scene, design):
+    """(id, parameters, table or None, interpolation) for the right-hand side."""
+    steering = scene.steering
+    plain = (None, law.LINEAR)
+    if steering is None:
+        return law.RADIAL, (), *plain
+    if steering.kind == "as designed" and isinstance(design, Track):
+        table = law.table(design.time - design.time[0], design.pitch, np.unwrap(design.clock), design.throttle, "cubic")
+        return law.TABLE_ORBITAL, (), table, law.CUBIC
+    if steering.kind == "as designed":
+        if np.ndim(design.pitch) == 0 and design.pitch == 0:  # Sun-facing needs no orbit plane, and may have none
+            return law.RADIAL, (), *plain
+        return law.ORBITAL, law.direction_parameters(float(design.pitch), float(design.clock)), *plain
+    if steering.kind == "table":
+        table = law.table(steering.time, steering.pitch, steering.clock, steering.throttle, steering.interpolation)
+        kind = law.TABLE_ORBITAL if steering.frame == "orbital" else law.TABLE_MERIDIAN
+        return kind, (), table, law.INTERPOLATIONS[steering.interpolation]
+    if steering.kind == "inertial":
+        return law.INERTIAL, tuple(frames.unit(steering.direction)), *plain
+    if steering.kind in ("orbital", "meridian"):
+        return law.LAWS[steering.kind], law.direction_parameters(steering.pitch, steering.clock), *plain
+    return law.LAWS[steering.kind], (), *plain
+
+
+def third_body(scene):
+    third = scene.environment.third_body
+    if third is None:
+        return ()
+    return third.mu, third.radius, np.sqrt(MU_SUN / third.radius**3), third.azimuth
+
+
+def _plasma(scene, body):
+    profile = scene.environment.ionosphere
+    if profile is None:
+        return ()
+    value = profile.force_per_length if profile.kind == "exponential-force" else profile.density
+    return (
+        ionosphere.PROFILES[profile.kind],
+        profile.reference_altitude,
+        value,
+        profile.scale_height,
+        getattr(profile, "ion_mass", 0.0),
+        body.radius,
+    )
+
+
+def _schedule(scene, table):
+    """(breaks, factors, pressure or None, switches): the piecewise-constant thrust factor of the whole run."""
+    duration = scene.propagation.duration
+    wind = scene.environment.solar_wind
+    wind_times, wind_factors, pressures = np.zeros(1), np.ones(1), None
+    if wind.kind == "gamma":
+        wind_times, pressures = solar_wind.gamma_pressure(wind.shape, wind.scale, wind.redraw, duration, wind.seed)
+        reference = solar_wind.reference_pressure(wind.shape, wind.scale, wind.reference == "unbiased")
+        wind_factors = solar_wind.thrust_factor(pressures, reference)
+    intervals = scene.device.active
+    edges = [edge for pair in intervals or [] for edge in pair]
+    smooth = table is None or getattr(scene.steering, "interpolation", "cubic") == "cubic"
+    knots = [] if smooth else table[:, 0]
+    breaks = np.unique(np.concatenate([[0.0], wind_times, edges, knots]))
+    breaks = breaks[(breaks >= 0) & (breaks < duration)]
+    drawn = np.searchsorted(wind_times, breaks, side="right") - 1
+    on = np.ones(len(breaks), dtype=bool)
+    if intervals is not None:
+        on = np.array([any(a <= t < b for a, b in intervals) for t in breaks])
+    switches = tuple(
+        (time, word)
+        for pair in intervals or []
+        for time, word in zip(pair, ("thrust on", "thrust off"), strict=True)
+        if 0 < time <= duration
+    )
+    pressure = None if pressures is None else pressures[drawn]
+    return breaks, wind_factors[drawn] * on, pressure, switches
+
+
+_SENSE = {"up": 1, "down": -1, "both": 0}
+
+
+def _watched(scene, body):
+    """Names and Watch of the scene's events and of those that come with a device."""
+    names, rows = [], []
+    for event in scene.event:
+        sense = _SENSE[event.sense]
+        kind = {"radius": happening.RADIUS, "altitude": happening.RADIUS, "node": happening.NODE}.get(event.kind)
+        level = event.radius or (body.radius + event.altitude if event.altitude else 0.0)
+        if event.kind == "escape":
+            kind, sense = happening.ENERGY, 1
+        elif event.kind in ("periapsis", "apoapsis"):
+            kind, sense = happening.APSIS, 1 if event.kind == "periapsis" else -1
+        names.append(event.name or event.kind)
+        rows.append((kind, level, sense, happening.STOP if event.stop else happening.RECORD))
+    if scene.device.kind == "plasma-brake":
+        names.append("brake off")
+        rows.append((happening.RADIUS, body.radius + scene.device.off_below, -1, happening.END_OF_USE))
+    return tuple(names), happening.watch(rows)
+
+
+def _approximations(scene, body, position, velocity, design) -> dict[str, FirstOrder]:
+    """The analytic solutions that a scene wants recorded beside its own."""
+    if not scene.approximation:
+        return {}
+    from sailviz.first_order import FirstOrder
+
+    r0, mu = float(np.linalg.norm(position)), body.mu
+    device, steering = scene.device, scene.steering
+    law = steering.kind if steering is not None else "radial"
+    pitch = steering.pitch * np.sign(np.sin(steering.clock)) if law == "orbital" else 0.0
+    if device.kind == "thruster":
+        size = device.acceleration * r0**2 / mu
+        if law == "circumferential":
+            pitch = np.pi / 2
+        thrust = (size * np.cos(pitch), size * np.sin(pitch), 0)
+    else:
+        from sailviz.design import asymptotic
+
+        shape = "electric-sail" if device.kind == "electric-sail" else _film(scene)
+        thrust = asymptotic.thrust(shape, sail_strength(scene, design), pitch, r0, mu)
+    return {
+        item.name: FirstOrder(
+            position, velocity, mu, scene.propagation.duration, thrust, item.leg, item.scheme, scene.source
+        )
+        for item in scene.approximation
+    }
+
+
+def epoch_of(scene) -> np.datetime64 | None:
+    return None if scene.epoch_utc is None else np.datetime64(scene.epoch_utc, "ns")

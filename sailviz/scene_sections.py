@@ -1,0 +1,495 @@
+"""The tables of a scene file, one class each: what may stand in them, in SI once loaded.
+
+Imports neither rerun nor numba nor scipy, so that `sailviz check` answers at once.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from sailviz.scene_faults import Dimension, nearest
+
+# ---------------------------------------------------------------- kinds of values: SI inside, unit in the key outside
+Length = Annotated[float, Dimension("length")]
+Thickness = Annotated[float, Dimension("thickness")]
+Time = Annotated[float, Dimension("time")]
+Angle = Annotated[float, Dimension("angle")]
+Acceleration = Annotated[float, Dimension("acceleration")]
+Mass = Annotated[float, Dimension("mass")]
+Area = Annotated[float, Dimension("area")]
+Voltage = Annotated[float, Dimension("voltage")]
+Pressure = Annotated[float, Dimension("pressure")]
+Force = Annotated[float, Dimension("force")]
+ForcePerLength = Annotated[float, Dimension("force_per_length")]
+NumberDensity = Annotated[float, Dimension("number_density")]
+IonMass = Annotated[float, Dimension("ion_mass")]
+Mu = Annotated[float, Dimension("mu")]
+Three = Field(min_length=3, max_length=3)
+PositionVector = Annotated[list[float], Dimension("length"), Three]
+VelocityVector = Annotated[list[float], Dimension("speed"), Three]
+Times = Annotated[list[float], Dimension("time")]
+Angles = Annotated[list[float], Dimension("angle")]
+Intervals = Annotated[list[Annotated[list[float], Field(min_length=2, max_length=2)]], Dimension("time")]
+
+POSITIVE = Field(gt=0)
+HALF_TURN = Field(ge=-3.141592653589794, le=3.141592653589794)
+QUARTER_TURN = Field(ge=-1.5707963267948968, le=1.5707963267948968)
+
+
+class Section(BaseModel):
+    """A table of the scene file."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+def _wrong(message: str, **context) -> PydanticCustomError:
+    return PydanticCustomError("scene", message, context or None)
+
+
+def _one_of(section: Section, *names: str) -> None:
+    """Exactly one of several fields (or groups joined by '+') must be given."""
+    given = [name for name in names if all(getattr(section, part) is not None for part in name.split("+"))]
+    if len(given) != 1:
+        words = " or ".join(name.replace("+", " with ") for name in names)
+        raise _wrong(f"needs exactly one of {words}" + (f", has {' and '.join(given)}" if given else ""))
+
+
+# ---------------------------------------------------------------- central body
+class CustomBody(Section):
+    """Any central body."""
+
+    name: str = "body"
+    mu: Annotated[Mu, POSITIVE]
+    radius: Annotated[Length, Field(ge=0)] = 0.0
+
+
+# ---------------------------------------------------------------- where it starts
+class CartesianStart(Section):
+    """Position and velocity in the inertial frame."""
+
+    kind: Literal["cartesian"]
+    position: PositionVector
+    velocity: VelocityVector
+
+
+class ElementsStart(Section):
+    """Osculating orbital elements."""
+
+    kind: Literal["elements"]
+    semi_major_axis: Length
+    eccentricity: Annotated[float, Field(ge=0)]
+    inclination: Annotated[Angle, Field(ge=0, le=3.141592653589794)] = 0.0
+    raan: Angle = 0.0
+    argument: Angle = 0.0
+    true_anomaly: Angle = 0.0
+
+    @model_validator(mode="after")
+    def _conic(self):
+        if (self.eccentricity < 1) != (self.semi_major_axis > 0) or self.eccentricity == 1:
+            raise _wrong("an ellipse has eccentricity < 1 and semi-major axis > 0, a hyperbola > 1 and < 0")
+        return self
+
+
+class CircularStart(Section):
+    """A circular Keplerian orbit."""
+
+    kind: Literal["circular"]
+    radius: Annotated[Length, POSITIVE] | None = None
+    altitude: Annotated[Length, POSITIVE] | None = None
+    inclination: Annotated[Angle, Field(ge=0, le=3.141592653589794)] = 0.0
+    raan: Angle = 0.0
+    argument_of_latitude: Angle = 0.0
+
+    @model_validator(mode="after")
+    def _size(self):
+        _one_of(self, "radius", "altitude")
+        return self
+
+
+class DesignedStart(Section):
+    """On an orbit that the device is designed to hold, or a little beside it."""
+
+    position_offset: PositionVector = [0.0, 0.0, 0.0]
+    velocity_offset: VelocityVector = [0.0, 0.0, 0.0]
+
+
+class DisplacedStart(DesignedStart):
+    """On a circular displaced non-Keplerian orbit: Sun distance, elevation over the ecliptic, Omega / Omega_K."""
+
+    kind: Literal["displaced"]
+    radius: Annotated[Length, POSITIVE]
+    elevation: Annotated[Angle, QUARTER_TURN]
+    rate_ratio: Annotated[float, POSITIVE]
+    azimuth: Angle = 0.0
+
+
+class HeliostationaryStart(DesignedStart):
+    """At rest, the thrust balancing the Sun's pull."""
+
+    kind: Literal["heliostationary"]
+    radius: Annotated[Length, POSITIVE]
+    elevation: Annotated[Angle, QUARTER_TURN] = 0.0
+    azimuth: Angle = 0.0
+
+
+class LagrangeStart(DesignedStart):
+    """At an artificial Lagrange point on the line from the Sun to a planet, environment.third_body or a massless
+    Earth."""
+
+    kind: Literal["lagrange-point"]
+    radius: Annotated[Length, POSITIVE]
+
+
+class PlanetFollowingStart(DesignedStart):
+    """Over a planet on its ellipse, at its longitude, at a fixed elevation and a fixed share of its distance;
+    perihelion on the x axis."""
+
+    kind: Literal["planet-following"]
+    planet: Literal["mercury", "venus", "earth", "mars", "jupiter"] | None = None
+    semi_major_axis: Annotated[Length, POSITIVE] | None = None
+    eccentricity: Annotated[float, Field(ge=0, lt=1)] | None = None
+    elevation: Annotated[Angle, QUARTER_TURN]
+    radius_ratio: Annotated[float, POSITIVE] = 1.0
+    true_anomaly: Angle = 0.0
+
+    @model_validator(mode="after")
+    def _which(self):
+        _one_of(self, "planet", "semi_major_axis+eccentricity")
+        return self
+
+
+class FlatEllipseStart(DesignedStart):
+    """On a Keplerian ellipse lifted off the ecliptic, its focus above the Sun; perihelion on the x axis."""
+
+    kind: Literal["flat-ellipse"]
+    semi_latus_rectum: Annotated[Length, POSITIVE]
+    eccentricity: Annotated[float, Field(ge=0, lt=1)]
+    height: Length
+    mu_ratio: Annotated[float, POSITIVE] = 1.0
+    true_anomaly: Angle = 0.0
+
+
+class SpiralStart(Section):
+    """On the logarithmic spiral that the sail's lightness number and pitch allow."""
+
+    kind: Literal["spiral"]
+    radius: Annotated[Length, POSITIVE]
+    azimuth: Angle = 0.0
+
+
+Start = Annotated[
+    CartesianStart
+    | ElementsStart
+    | CircularStart
+    | DisplacedStart
+    | HeliostationaryStart
+    | LagrangeStart
+    | PlanetFollowingStart
+    | FlatEllipseStart
+    | SpiralStart,
+    Field(discriminator="kind"),
+]
+HELD_STARTS = ("displaced", "heliostationary", "lagrange-point", "planet-following", "flat-ellipse")
+
+# ---------------------------------------------------------------- what flies
+DESIGNED = Literal["as designed"]
+
+
+class FilmCoefficients(Section):
+    """Own force coefficients."""
+
+    b1: float
+    b2: float
+    b3: float
+    efficiency: Annotated[float, Field(gt=0, le=1)] = 1.0
+
+    @model_validator(mode="after")
+    def _pushes(self):
+        if self.b1 + self.b2 + self.b3 <= 0:
+            raise _wrong("b1 + b2 + b3 must be positive: the sail is pushed away from the Sun")
+        return self
+
+
+class FilmOptics(Section):
+    """Own optical properties: reflectivity, specular share, non-Lambertian coefficients, emissivities of front and
+    back."""
+
+    cr: Annotated[float, Field(ge=0, le=1)]
+    cs: Annotated[float, Field(ge=0, le=1)]
+    Bf: Annotated[float, Field(ge=0, le=1)]
+    Bb: Annotated[float, Field(ge=0, le=1)]
+    ef: Annotated[float, Field(ge=0, le=1)]
+    eb: Annotated[float, Field(ge=0, le=1)]
+
+
+class Device(Section):
+    """What every device may say."""
+
+    mass: Annotated[Mass, POSITIVE] | None = None
+    active: Intervals | None = None
+
+    @model_validator(mode="after")
+    def _ordered(self):
+        edges = [edge for pair in self.active or [] for edge in pair]
+        if edges != sorted(set(edges)):
+            raise _wrong("active must list [start, stop] pairs, each after the one before")
+        return self
+
+
+class SolarSail(Device):
+    """A flat solar sail. Its strength: characteristic acceleration, lightness number, or area with mass."""
+
+    kind: Literal["solar-sail"]
+    film: Literal["ideal", "eta-perfect", "jpl-1978", "jpl-2015"] | FilmCoefficients | FilmOptics = "ideal"
+    characteristic_acceleration: Annotated[Acceleration, POSITIVE] | DESIGNED | None = None
+    lightness_number: Annotated[float, POSITIVE] | None = None
+    area: Annotated[Area, POSITIVE] | None = None
+
+    @model_validator(mode="after")
+    def _strength(self):
+        _one_of(self, "characteristic_acceleration", "lightness_number", "area+mass")
+        return self
+
+
+class ElectricSail(Device):
+    """An electric solar wind sail. Its strength: characteristic acceleration, or hardware by (3.40)-(3.41)."""
+
+    kind: Literal["electric-sail"]
+    model: Literal["final", "original", "updated", "polynomial"] = "final"
+    characteristic_acceleration: Annotated[Acceleration, POSITIVE] | DESIGNED | None = None
+    tethers: Annotated[int, Field(gt=0)] | None = None
+    tether_length: Annotated[Length, POSITIVE] | None = None
+    voltage: Annotated[Voltage, POSITIVE] | None = None
+    wind_pressure: Annotated[Pressure, POSITIVE] = 2.0e-9
+    wind_potential: Annotated[Voltage, Field(ge=0)] = 1_000.0
+    pitch_limit: Annotated[Angle, Field(gt=0, le=1.5707963267948968)] = 1.0471975511965976
+
+    @model_validator(mode="after")
+    def _strength(self):
+        _one_of(self, "characteristic_acceleration", "tethers+tether_length+voltage+mass")
+        if self.voltage is not None and self.voltage <= self.wind_potential:
+            raise _wrong("voltage must exceed wind_potential, or there is no thrust")
+        return self
+
+
+class PlasmaBrake(Device):
+    """A negatively charged tether hanging below a satellite."""
+
+    kind: Literal["plasma-brake"]
+    mass: Annotated[Mass, POSITIVE]
+    tether_length: Annotated[Length, POSITIVE]
+    voltage: Annotated[Voltage, POSITIVE] = 1_000.0
+    wire_radius: Annotated[Thickness, POSITIVE] = 1e-3
+    off_below: Annotated[Length, Field(ge=0)] = 200e3
+
+
+class Thruster(Device):
+    """Constant acceleration or constant thrust, with mass loss if a specific impulse is given."""
+
+    kind: Literal["thruster"]
+    acceleration: Annotated[Acceleration, POSITIVE] | None = None
+    thrust: Annotated[Force, POSITIVE] | None = None
+    specific_impulse: Annotated[Time, POSITIVE] | None = None
+
+    @model_validator(mode="after")
+    def _strength(self):
+        _one_of(self, "acceleration", "thrust+mass")
+        return self
+
+
+class NoDevice(Device):
+    """Ballistic flight."""
+
+    kind: Literal["none"]
+
+
+Devices = Annotated[SolarSail | ElectricSail | PlasmaBrake | Thruster | NoDevice, Field(discriminator="kind")]
+
+
+# ---------------------------------------------------------------- how it is steered
+class PlainSteering(Section):
+    """A law without parameters."""
+
+    kind: Literal["sun-facing", "radial", "circumferential", "tangential", "vertical", "as designed"]
+
+
+class FrameSteering(Section):
+    """Pitch and clock angle fixed in the orbital frame or in the meridian plane."""
+
+    kind: Literal["orbital", "meridian"]
+    pitch: Annotated[Angle, HALF_TURN]
+    clock: Angle = 0.0
+
+
+class InertialSteering(Section):
+    """A direction fixed in space."""
+
+    kind: Literal["inertial"]
+    direction: Annotated[list[float], Three]
+
+    @model_validator(mode="after")
+    def _nonzero(self):
+        if not any(self.direction):
+            raise _wrong("direction must not be the zero vector")
+        return self
+
+
+class TableSteering(Section):
+    """Pitch, clock angle and throttle over time."""
+
+    kind: Literal["table"]
+    frame: Literal["orbital", "meridian"] = "orbital"
+    interpolation: Literal["linear", "hold", "cubic"] = "linear"
+    time: Annotated[Times, Field(min_length=2)]
+    pitch: Angles
+    clock: Angles
+    throttle: list[Annotated[float, Field(ge=0)]] | None = None
+
+    @model_validator(mode="after")
+    def _columns(self):
+        if len({len(c) for c in (self.time, self.pitch, self.clock, self.throttle) if c is not None}) > 1:
+            raise _wrong("time, pitch, clock and throttle must have the same length")
+        if any(b <= a for a, b in zip(self.time, self.time[1:], strict=False)):
+            raise _wrong("time must increase")
+        return self
+
+
+Steering = Annotated[PlainSteering | FrameSteering | InertialSteering | TableSteering, Field(discriminator="kind")]
+
+
+# ---------------------------------------------------------------- what surrounds it
+class GammaWind(Section):
+    """Solar-wind dynamic pressure redrawn from a gamma distribution, independently, every interval."""
+
+    kind: Literal["gamma"]
+    shape: Annotated[float, POSITIVE]
+    scale: Annotated[Pressure, POSITIVE]
+    redraw: Annotated[Time, POSITIVE]
+    seed: Annotated[int, Field(ge=0)]
+    reference: Literal["mean", "unbiased"] = "mean"
+
+
+class SteadyWind(Section):
+    """The nominal wind."""
+
+    kind: Literal["steady"]
+
+
+class ForceProfile(Section):
+    """Plasma drag per length of tether, exponential in altitude."""
+
+    kind: Literal["exponential-force"]
+    force_per_length: Annotated[ForcePerLength, POSITIVE]
+    reference_altitude: Annotated[Length, POSITIVE] = 700e3
+    scale_height: Annotated[Length, POSITIVE]
+
+
+class DensityProfile(Section):
+    """Plasma density, exponential in altitude, of one mean ion mass; the force law makes drag of it."""
+
+    kind: Literal["exponential-density"]
+    density: Annotated[NumberDensity, POSITIVE]
+    reference_altitude: Annotated[Length, POSITIVE] = 700e3
+    scale_height: Annotated[Length, POSITIVE]
+    ion_mass: Annotated[IonMass, POSITIVE] = 15.999 * 1.66053906660e-27
+
+
+class ThirdBody(Section):
+    """A planet on a circular orbit in the ecliptic, whose gravity acts on the craft."""
+
+    name: str = "Earth"
+    mu: Annotated[Mu, POSITIVE] = 3.986004418e14
+    radius: Annotated[Length, POSITIVE] = 149_597_870_700.0
+    azimuth: Angle = 0.0
+
+
+class Environment(Section):
+    """Everything around the craft but the point mass it orbits."""
+
+    solar_wind: Annotated[SteadyWind | GammaWind, Field(discriminator="kind")] = SteadyWind(kind="steady")
+    ionosphere: Annotated[ForceProfile | DensityProfile, Field(discriminator="kind")] | None = None
+    third_body: ThirdBody | None = None
+    j2: bool = False
+    corotation: bool = False
+
+
+# ---------------------------------------------------------------- how it is computed, watched, recorded, judged
+class Propagation(Section):
+    """Duration, output grid and accuracy."""
+
+    duration: Annotated[Time, POSITIVE]
+    outputs: Annotated[int, Field(ge=2, le=100_000_000)] | None = None
+    output_interval: Annotated[Time, POSITIVE] | None = None
+    tolerance: Annotated[float, Field(ge=1e-15, le=1e-3)] = 1e-10
+    largest_step: Annotated[Time, POSITIVE] | None = None
+
+    @model_validator(mode="after")
+    def _grid(self):
+        if self.outputs is not None and self.output_interval is not None:
+            raise _wrong("give outputs or output_interval, not both")
+        if self.output_interval is not None and self.output_interval > self.duration:
+            raise _wrong("output_interval is longer than duration")
+        return self
+
+
+class Watched(Section):
+    """An event to find. `stop` ends the run there."""
+
+    kind: Literal["radius", "altitude", "periapsis", "apoapsis", "node", "escape"]
+    name: str | None = None
+    radius: Annotated[Length, POSITIVE] | None = None
+    altitude: Annotated[Length, POSITIVE] | None = None
+    sense: Literal["up", "down", "both"] = "both"
+    stop: bool = False
+
+    @model_validator(mode="after")
+    def _level(self):
+        for field in ("radius", "altitude"):
+            if (self.kind == field) != (getattr(self, field) is not None):
+                needs = f'kind = "{field}" needs {field}'
+                raise _wrong(needs if self.kind == field else f'{field} belongs to kind = "{field}" and to no other')
+        return self
+
+
+class Approximation(Section):
+    """The first-order analytic solution, recorded beside the integrated trajectory."""
+
+    kind: Literal["first-order"]
+    name: str = "first order"
+    leg: Annotated[Angle, POSITIVE] | None = None
+    scheme: Literal["plain", "midpoint"] = "plain"
+
+
+class Recording(Section):
+    """How the recording plays."""
+
+    play_duration: Annotated[Time, POSITIVE] = 40.0
+
+
+class Expectation(Section):
+    """A quantity that the run must reach: value and tolerance in the quantity's own unit."""
+
+    quantity: str
+    closed_form: Literal["kepler", "reduced-kepler", "displaced-orbit", "logarithmic-spiral"] | None = None
+    at: Literal["start", "end", "min", "max", "mean", "drift"] | str | None = None
+    at_time: Time | None = None
+    value: float
+    within: Annotated[float, POSITIVE] | None = None
+    within_percent: Annotated[float, POSITIVE] | None = None
+
+    @model_validator(mode="after")
+    def _known(self):
+        from sailviz.quantities import spellings
+
+        if self.quantity not in spellings():
+            raise _wrong(f'unknown quantity "{self.quantity}". {nearest(self.quantity, spellings())}')
+        if (self.quantity == "closed_form_error") != (self.closed_form is not None):
+            raise _wrong('closed_form belongs to quantity = "closed_form_error" and to no other')
+        _one_of(self, "at", "at_time")
+        _one_of(self, "within", "within_percent")
+        if self.value == 0 and self.within_percent is not None:
+            raise _wrong("of a value of 0 no percentage can be taken: give within")
+        return self

@@ -1,0 +1,144 @@
+"""What a picture of a run needs to know beside its rows: words, the craft, orbits drawn from the start, planets."""
+
+from __future__ import annotations
+
+import platform
+
+import numba
+import numpy as np
+
+import sailviz
+from sailviz import elements as orbital
+from sailviz import ephemeris
+from sailviz.describe import parameters_in_words
+from sailviz.design.holding import Track
+from sailviz.plan import TRACK_POINTS, Plan, epoch_of, sail_strength, third_body
+from sailviz.propagate import dop853
+from sailviz.run import Craft, Reference, Setting
+from sailviz.scene_sections import HELD_STARTS
+
+
+def setting_of(p: Plan, planets, rows) -> Setting:
+    scene = p.scene
+    duration = scene.propagation.duration
+    return Setting(
+        title=scene.title,
+        family=scene.family or _family(scene),
+        about=scene.about,
+        look_for=tuple(scene.look_for),
+        thesis=scene.thesis,
+        body=p.body,
+        craft=_craft(scene),
+        duration=duration,
+        rows=rows,
+        epoch=epoch_of(scene),
+        references=_references(p, planets),
+        parameters=tuple(parameters_in_words(scene, p.design, _words_strength(scene, p.design))),
+        text=scene.text,
+        resolved=scene.resolved(),
+        versions={
+            "sailviz": sailviz.__version__,
+            "python": platform.python_version(),
+            "numpy": np.__version__,
+            "numba": numba.__version__,
+        },
+        accuracy=(
+            f"Dormand-Prince 8(5,3) with dense output, relative tolerance {scene.propagation.tolerance:g} per step "
+            "(position against distance, velocity against the larger of speed and circular speed), float64."
+        ),
+        identity=p.identity,
+        play_duration=scene.recording.play_duration,
+    )
+
+
+def _family(scene) -> str:
+    if scene.body == "earth":
+        return "deorbit"
+    if scene.environment.solar_wind.kind != "steady":
+        return "wind"
+    return "displaced" if scene.start.kind in HELD_STARTS else "spirals"
+
+
+def _craft(scene) -> Craft:
+    device = scene.device
+    labels = {
+        "solar-sail": "Solar sail",
+        "electric-sail": "E-sail",
+        "plasma-brake": "Plasma brake",
+        "thruster": "Thruster",
+        "none": "Spacecraft",
+    }
+    area = getattr(device, "area", None)
+    return Craft(
+        device.kind,
+        labels[device.kind],
+        side=None if area is None else float(np.sqrt(area)),
+        tethers=getattr(device, "tethers", None),
+        tether_length=getattr(device, "tether_length", None),
+    )
+
+
+def _words_strength(scene, design):
+    return sail_strength(scene, design) if scene.device.kind in ("solar-sail", "electric-sail") else None
+
+
+def _references(p: Plan, planets) -> tuple[Reference, ...]:
+    """Curves that are there from the start: the orbit designed, the orbit departed from, the planets' orbits."""
+    found = []
+    start = p.scene.start
+    turn = np.linspace(0, 2 * np.pi, 361)
+    if start.kind == "displaced":
+        rho, z = start.radius * np.cos(start.elevation), start.radius * np.sin(start.elevation)
+        ring = np.column_stack([rho * np.cos(turn), rho * np.sin(turn), np.full_like(turn, z)])
+        found.append(Reference("designed orbit", "target", ring))
+    elif isinstance(p.design, Track):
+        found.append(Reference("designed orbit", "target", p.design.position[: TRACK_POINTS + 1]))
+    elif start.kind in ("circular", "elements"):
+        e = orbital.elements(p.position, p.velocity, p.body.mu)
+        if e.eccentricity < 1:
+            curve = orbital.state(
+                e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument, turn, p.body.mu
+            )[0]
+            found.append(Reference("initial orbit", "initial", curve))
+    time = np.linspace(0.0, p.scene.propagation.duration, 2000)
+    found += [Reference(name, "approximation", way.positions(time)) for name, way in p.approximations.items()]
+    found += [Reference(name, "planet", orbit) for name, orbit in planets.items()]
+    return tuple(found)
+
+
+def planets_in_view(p: Plan) -> dict[str, np.ndarray]:
+    """Name -> orbit (k, 3) m of the planets that a heliocentric run comes near."""
+    if p.body.name != "Sun":
+        return {}
+    third = p.scene.environment.third_body
+    if third is not None:  # the planets of this scene are the one whose gravity acts
+        turn = np.linspace(0, 2 * np.pi, 361)
+        return {third.name: third.radius * np.column_stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)])}
+    reach = 1.15 * _farthest(p)
+    orbits = {name: ephemeris.planet_orbit(name, epoch_of(p.scene)) for name in ephemeris.PLANETS}
+    return {name: orbit for name, orbit in orbits.items() if np.linalg.norm(orbit, axis=1).min() <= reach}
+
+
+def _farthest(p: Plan) -> float:
+    """Largest distance from the centre, m, from a coarse run ahead: a millisecond, and the same for blocks of any
+    size."""
+    times = np.linspace(0.0, p.scene.propagation.duration, 256)
+    out = np.empty((6, len(times)))
+    state = dop853.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
+    dop853.advance(state, p.model, p.breaks, p.factors, p.watch, times, out, times[-1], 1e-7, np.inf)
+    return float(np.linalg.norm(out[:3, : dop853.rows_done(state)], axis=0).max())
+
+
+def bodies(p: Plan, planets, time) -> dict[str, np.ndarray]:
+    """Positions (n, 3) m of what is drawn beside the craft; nothing without an epoch."""
+    third = p.scene.environment.third_body
+    if third is not None:
+        _, radius, rate, azimuth = third_body(p.scene)
+        angle = azimuth + rate * time
+        return {third.name: radius * np.column_stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)])}
+    epoch = epoch_of(p.scene)
+    if epoch is None:
+        return {}
+    if p.body.name == "Earth":
+        return {"Sun": ephemeris.sun_position(epoch, time)}
+    return {name: ephemeris.planet_position(name, epoch, time, p.scene.ephemeris) for name in planets}

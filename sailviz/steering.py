@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from sailviz.compiled import inlined
+from sailviz.optimal_steering import analytic_pitch, optimal_pitch  # noqa: F401  part of this module's face
 
 RADIAL, ORBITAL, MERIDIAN, TRANSVERSE, TANGENTIAL, INERTIAL, TABLE_ORBITAL, TABLE_MERIDIAN, USER = range(9)
 

@@ -19,13 +19,13 @@ from sailviz import steering as law
 from sailviz.compiled import called, compiled, inlined
 from sailviz.environment.gravity import gravity
 from sailviz.environment.ionosphere import FORCE_PROFILE, exponential
+from sailviz.propulsion.devices import ELECTRIC_SAIL, NO_DEVICE, PLASMA_BRAKE, SOLAR_SAIL, THRUSTER  # noqa: F401
 from sailviz.propulsion.electric_sail import esail_force
 from sailviz.propulsion.plasma_brake import negative_force_per_length
 from sailviz.propulsion.solar_sail import sail_force
 from sailviz.propulsion.thruster import thruster_force
 
 SIZE = 7  # of the state
-NO_DEVICE, SOLAR_SAIL, ELECTRIC_SAIL, PLASMA_BRAKE, THRUSTER = range(5)
 
 # The parameter row: who reads which place
 MU, J2_STRENGTH, SURFACE_RADIUS, ROTATION = 0, 1, 2, 3

@@ -1,0 +1,130 @@
+"""What lowers a near-circular orbit: tether and neutral drag along the velocity, and how long each metre takes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from sailviz.constants import J2_EARTH, MU_EARTH, RADIUS_EARTH, ROTATION_EARTH
+from sailviz.design.decay_profiles import SPEED_EXPONENT, ForceProfile, constant
+
+BRAKE_FLOOR = 200e3  # m, the brake is off below: molecular ions, and drag is stronger anyway
+PANEL = 100e3  # m, longest stretch of altitude under one Gauss-Legendre rule
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
+
+
+def mean_radius_offset(semi_major_axis, inclination):
+    """Mean radius less mean semi-major axis (time mean of the osculating one) of a near-circular orbit under J2, m; a
+    in m, i in rad. (3/4) J2 (R_E / a)^2 a (3 sin^2 i - 2): +4.4 km at 97.8 deg, -0.7 km at 51.6 deg. Re-derived."""
+    return 0.75 * J2_EARTH * RADIUS_EARTH**2 / semi_major_axis * (3 * np.sin(inclination) ** 2 - 2)
+
+
+def corotation_factor(semi_major_axis, inclination, exponent=SPEED_EXPONENT):
+    """Braking along the velocity in a medium that turns with the Earth, over that in one at rest; a in m, i in rad.
+
+    A force ~ u^exponent against u = v - omega x r: (u / v)^exponent (v - omega a cos i) / u, with cos^2 of the latitude
+    at its mean over the orbit. exponent : 1.933 of Coulomb drag, 2 of neutral drag. Re-derived.
+    """
+    turning = ROTATION_EARTH * semi_major_axis**1.5 / np.sqrt(MU_EARTH)
+    along = 1 - turning * np.cos(inclination)
+    relative2 = 1 - 2 * turning * np.cos(inclination) + turning**2 * (1 - np.sin(inclination) ** 2 / 2)
+    return relative2 ** ((exponent - 1) / 2) * along
+
+
+@dataclass(frozen=True)
+class Craft:
+    """All that brakes one craft; what each means: `sailviz.design.decay.decay_time`."""
+
+    mass: float
+    length: float
+    profile: ForceProfile | None
+    drag_area: float
+    air: object
+    brake_floor: float
+    inclination: float | None
+    mean_radius: bool
+    corotation: bool
+
+    def height(self, altitude):
+        """Altitude in m at which force and air are looked up."""
+        return altitude + (mean_radius_offset(RADIUS_EARTH + altitude, self.inclination) if self.mean_radius else 0.0)
+
+    def brake(self, altitude):
+        """Force of the tether along the velocity, N."""
+        if self.profile is None or self.length == 0:
+            return np.zeros_like(altitude)
+        force = self.length * np.where(altitude < self.brake_floor, 0.0, self.profile(self.height(altitude)))
+        return force * corotation_factor(RADIUS_EARTH + altitude, self.inclination) if self.corotation else force
+
+    def drag(self, altitude):
+        """Neutral drag along the velocity, N."""
+        if self.air is None or self.drag_area == 0:
+            return np.zeros_like(altitude)
+        a = RADIUS_EARTH + altitude
+        force = 0.5 * self.air(self.height(altitude)) * MU_EARTH / a * self.drag_area
+        return force * corotation_factor(a, self.inclination, 2.0) if self.corotation else force
+
+    def slowness(self, altitude):
+        """Time per metre of descent, s/m."""
+        a = RADIUS_EARTH + altitude
+        return self.mass * np.sqrt(MU_EARTH) / (2 * a**1.5 * (self.brake(altitude) + self.drag(altitude)))
+
+    def edges(self, lower, upper, spacing=PANEL):
+        """Altitudes from upper down to lower, between which everything is smooth."""
+        knots = [*getattr(self.profile, "knots", ()), *getattr(self.air, "knots", ()), self.brake_floor]
+        shift = float(self.height(0.5 * (lower + upper)) - 0.5 * (lower + upper))  # within 0.5 km over the whole range
+        inside = [k - shift for k in knots[:-1]] + knots[-1:]
+        pieces = np.linspace(upper, lower, 1 + int(np.ceil((upper - lower) / spacing)))
+        inside = [k for k in inside if lower < k < upper]
+        return np.unique(np.concatenate([pieces, inside]))[::-1]
+
+    def stages(self, edges):
+        """Time in s that each stretch between falling altitudes takes."""
+        middle, half = 0.5 * (edges[:-1] + edges[1:]), 0.5 * (edges[:-1] - edges[1:])
+        return half * (self.slowness(middle[:, None] + half[:, None] * NODES) @ WEIGHTS)
+
+
+class Air:
+    """Density kg/m3 at altitudes in m, its logarithm linear between those of a table."""
+
+    def __init__(self, altitude, density):
+        self.altitude, self.log = np.asarray(altitude, dtype=float), np.log(density)
+        self.knots = tuple(self.altitude)
+
+    def __call__(self, altitude):
+        return np.exp(np.interp(altitude, self.altitude, self.log))
+
+
+def setting(force_profile, drag_area, air, brake_floor, inclination, mean_radius, corotation):
+    """A Craft without mass and length, its options checked."""
+    if force_profile is not None and not callable(force_profile):
+        force_profile = constant(float(force_profile))
+    if air is not None and not callable(air):
+        air = Air(*air)
+    if (mean_radius or corotation) and inclination is None:
+        raise ValueError("the mean radius and the co-rotation of the plasma depend on the inclination: give it, in rad")
+    if np.any(np.asarray(drag_area) < 0) or (np.any(np.asarray(drag_area) > 0) and air is None):
+        raise ValueError("a drag area, zero or more, takes an atmosphere: air = (altitude in m, density in kg/m3)")
+    return Craft(1.0, 0.0, force_profile, 0.0, air, brake_floor, inclination, mean_radius, corotation)
+
+
+def craft_of(setting, mass, length, upper, lower, drag_area):
+    """One craft between two altitudes, or the reason why it cannot be."""
+    if not (mass > 0 and length >= 0):
+        raise ValueError(f"mass must be positive and length not negative, not {mass:g} kg and {length:g} m")
+    if not lower <= upper:
+        raise ValueError(f"a brake only lowers an orbit: {upper / 1e3:g} km is not above {lower / 1e3:g} km")
+    craft = replace(setting, mass=mass, length=length, drag_area=drag_area)
+    braking = craft.profile is not None and length > 0
+    if drag_area == 0 and (not braking or lower < craft.brake_floor):
+        what = f"below {craft.brake_floor / 1e3:g} km the brake is off" if braking else "there is no brake"
+        raise ValueError(f"{what} and no drag area is given: nothing lowers the orbit")
+    if braking:
+        lowest, highest = getattr(craft.profile, "lowest", -np.inf), getattr(craft.profile, "highest", np.inf)
+        if upper > highest or max(lower, craft.brake_floor) < lowest:
+            raise ValueError(
+                f"the force profile {craft.profile.label} is known from {lowest / 1e3:g} to {highest / 1e3:g} km, the "
+                f"descent runs from {upper / 1e3:g} to {lower / 1e3:g} km; profile.extended() holds its ends"
+            )
+    return craft

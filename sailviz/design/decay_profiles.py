@@ -1,0 +1,191 @@
+"""Drag per length of tether over altitude, as the quasi-circular decay needs it: shapes, fits and the shipped tables.
+
+Altitudes are above a sphere of the equatorial radius. Tables: orbit averages of the force law over IRI-2020 at -1 kV,
+effective wire radius 1 mm, circular speed, no co-rotation; see assets/README.md.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache
+
+import numpy as np
+
+from sailviz.constants import ATOMIC_MASS, MU_EARTH, RADIUS_EARTH
+from sailviz.propulsion.plasma_brake import force_per_length
+from sailviz.shipped import shipped_folder
+
+LEVELS = {"min2019": 70.0, "mid2014": 145.0, "max2001": 193.0}  # solar level -> F10.7 in solar flux units
+INCLINATIONS = (97.8, 51.6)  # deg, of the shipped orbit averages
+BAND = (0.5, 1.0, 2.0)  # plasma density over the model's: topside models differ by this much and, near maximum, more
+POLAR = np.radians(INCLINATIONS[0])
+REFERENCE = 700e3  # m, altitude at which the fitted shapes are anchored
+
+# d ln f / d ln n, d ln f / d ln V, d ln f / d ln v at 3e10 / m3, O+, 1 kV, 7.5 km/s: what a shape follows that has lost
+# the plasma behind it
+DENSITY_EXPONENT, VOLTAGE_EXPONENT, SPEED_EXPONENT = 0.537, 0.497, 1.933
+
+
+@dataclass(frozen=True)
+class Plasma:
+    """What a table was made of, at altitudes in m: effective density 1/m3 (with the mean ion mass it gives the averaged
+    force), mean ion mass kg, voltage V (absolute), wire radius m."""
+
+    altitude: np.ndarray
+    density: np.ndarray
+    ion_mass: np.ndarray
+    voltage: float = 1000.0
+    wire_radius: float = 1e-3
+
+    def force(self):
+        """Force per length at its altitudes, N/m, at circular speed."""
+        speed = np.sqrt(MU_EARTH / (RADIUS_EARTH + self.altitude))
+        return force_per_length(self.density, self.ion_mass, speed, self.voltage, self.wire_radius)
+
+
+@dataclass(frozen=True)
+class ForceProfile:
+    """profile(altitude in m) -> force per length of tether in N/m, same shape.
+
+    label : in words. law : the function. knots : altitudes in m between which it is smooth. lowest, highest : m, the
+    range it was made for. plasma : what stands behind it, if that is known.
+    """
+
+    label: str
+    law: Callable
+    knots: tuple = ()
+    lowest: float = -np.inf
+    highest: float = np.inf
+    plasma: Plasma | None = None
+
+    def __call__(self, altitude):
+        return self.law(np.asarray(altitude, dtype=float))
+
+    def scaled(self, factor, label=None) -> ForceProfile:
+        """The same profile times a factor."""
+        return replace(self, label=label or f"{self.label}, times {factor:g}", law=lambda h: factor * self.law(h))
+
+    def extended(self) -> ForceProfile:
+        """The same profile without its limits: a table holds its end values there, a shape goes on."""
+        return replace(self, lowest=-np.inf, highest=np.inf)
+
+    def with_density(self, factor) -> ForceProfile:
+        """For a plasma density times `factor`: by the force law where the plasma is known, else factor^0.537."""
+        label = f"{self.label}, density times {factor:g}"
+        if self.plasma is None:
+            return self.scaled(factor**DENSITY_EXPONENT, label)
+        return self._rescaled(replace(self.plasma, density=factor * self.plasma.density), label)
+
+    def with_voltage(self, voltage, wire_radius=None) -> ForceProfile:
+        """For another voltage in V (absolute) and wire radius in m: f goes with sqrt(Vt) exp(-Vi / Vt), evaluated with
+        the plasma behind the table; without one (V / 1 kV)^0.497, and the wire radius cannot change."""
+        label = f"{self.label}, {voltage:g} V"
+        if self.plasma is None:
+            if wire_radius is not None:
+                raise ValueError(f"{self.label}: how the force depends on the wire's radius is not known here")
+            return self.scaled((voltage / 1000.0) ** VOLTAGE_EXPONENT, label)
+        radius = self.plasma.wire_radius if wire_radius is None else wire_radius
+        return self._rescaled(replace(self.plasma, voltage=voltage, wire_radius=radius), label)
+
+    def _rescaled(self, plasma, label):
+        ratio = np.log(plasma.force() / self.plasma.force())
+        altitude = plasma.altitude
+        return replace(
+            self, label=label, plasma=plasma, law=lambda h: self.law(h) * np.exp(np.interp(h, altitude, ratio))
+        )
+
+
+def constant(force) -> ForceProfile:
+    """The same force per length, N/m, at every altitude."""
+    return ForceProfile("constant force", lambda h: np.full_like(h, force))
+
+
+def exponential(f700, scale_height) -> ForceProfile:
+    """f700 exp(-(h - 700 km) / H), f700 in N/m, H in m."""
+    return ForceProfile("exponential", lambda h: f700 * np.exp((REFERENCE - h) / scale_height))
+
+
+def power_law(f700, exponent) -> ForceProfile:
+    """f700 (h / 700 km)^p, f700 in N/m."""
+    return ForceProfile("power law", lambda h: f700 * (h / REFERENCE) ** exponent)
+
+
+def log_quadratic(q0, q1, q2) -> ForceProfile:
+    """ln f = q0 + q1 x + q2 x^2 with f in N/m and x = h - 700 km in m: the analytical model that fits every level."""
+    return ForceProfile("log-quadratic", lambda h: np.exp(q0 + (h - REFERENCE) * (q1 + (h - REFERENCE) * q2)))
+
+
+def tabulated(altitude, force, label="table", plasma=None) -> ForceProfile:
+    """From forces per length in N/m at altitudes (k,) in m, rising: ln f linear between them, held outside."""
+    altitude, force = np.asarray(altitude, dtype=float), np.asarray(force, dtype=float)
+    if altitude.ndim != 1 or altitude.shape != force.shape or len(altitude) < 2 or np.any(np.diff(altitude) <= 0):
+        raise ValueError("a force profile takes at least two rising altitudes and as many forces")
+    if not np.all(force > 0):
+        raise ValueError("the forces of a profile must be positive: between the altitudes their logarithm is linear")
+    log = np.log(force)
+    return ForceProfile(
+        label, lambda h: np.exp(np.interp(h, altitude, log)), tuple(altitude), altitude[0], altitude[-1], plasma
+    )
+
+
+@cache
+def _shipped_columns():
+    path = shipped_folder("assets") / "plasma_brake_profiles.csv"
+    with path.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.reader(line for line in file if not line.startswith("#")))
+    return dict(zip(rows[0], np.array(rows[1:], dtype=float).T, strict=True))
+
+
+def shipped_profile(level="min2019", inclination=POLAR) -> ForceProfile:
+    """The shipped orbit average, 200-1500 km every 25 km. level : "min2019", "mid2014", "max2001". inclination : rad,
+    within 2 deg of 97.8 or 51.6 deg or of their supplements, which cover the same latitudes.
+
+    Averaged over local time, longitude, two seasons and the latitudes of the orbit (the force, not the density).
+    """
+    if level not in LEVELS:
+        raise ValueError(f"there is no solar level {level!r}, only {', '.join(LEVELS)}")
+    folded = np.degrees(np.arcsin(np.sin(inclination)))
+    near = [i for i in INCLINATIONS if abs(folded - np.degrees(np.arcsin(np.sin(np.radians(i))))) <= 2]
+    if not near:
+        raise ValueError(
+            f"the shipped profiles are averages over orbits of {' and '.join(f'{i:g}' for i in INCLINATIONS)} deg, not "
+            f"{np.degrees(inclination):g}: average the ionosphere table instead (averaged_profile)"
+        )
+    columns, stem = _shipped_columns(), f"{level}_{near[0]:g}_"
+    altitude = 1e3 * columns["alt_km"]
+    plasma = Plasma(altitude, columns[stem + "neff_m3"], columns[stem + "mi_u"] * ATOMIC_MASS)
+    force = 1e-9 * columns[stem + "f1kV_nN_per_m"]
+    return tabulated(altitude, force, f"IRI-2020 {level}, {near[0]:g} deg", plasma)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A shape through a profile: the profile itself, its coefficients (SI, in the order of its constructor) and the
+    largest relative error of the force at the altitudes it was fitted to."""
+
+    profile: ForceProfile
+    coefficients: tuple
+    largest_error: float
+
+
+def fit(profile, shape="log-quadratic", lower=400e3, upper=1000e3, spacing=25e3) -> Fit:
+    """Least squares of ln f between two altitudes in m, every `spacing` m. shape : "exponential", "power" or
+    "log-quadratic". Of the shipped profiles, 400-1000 km: the log-quadratic is within 2 to 6 %, the exponential within
+    5 to 14 %, the power law within 7 to 26 %."""
+    altitude = np.arange(lower, upper + spacing / 2, spacing)
+    log = np.log(profile(altitude))
+    if shape == "exponential":
+        slope, top = np.polyfit(altitude - REFERENCE, log, 1)
+        coefficients, make = (np.exp(top), -1 / slope), exponential
+    elif shape == "power":
+        slope, top = np.polyfit(np.log(altitude / REFERENCE), log, 1)
+        coefficients, make = (np.exp(top), slope), power_law
+    elif shape == "log-quadratic":
+        coefficients, make = np.polyfit((altitude - REFERENCE) / 1e6, log, 2)[::-1] / [1, 1e6, 1e12], log_quadratic
+    else:
+        raise ValueError(f'there is no shape {shape!r}, only "exponential", "power" and "log-quadratic"')
+    coefficients = tuple(float(c) for c in coefficients)
+    found = replace(make(*coefficients), lowest=lower, highest=upper)
+    return Fit(found, coefficients, float(np.max(np.abs(found(altitude) / np.exp(log) - 1))))

@@ -8,7 +8,12 @@ MU_SUN = 1.327_124_400_18e20  # m3/s2, heliocentric gravitational constant, JPL 
 MU_EARTH = 3.986_004_418e14  # m3/s2, WGS 84 / IERS 2010
 RADIUS_SUN = 695_700e3  # m, nominal solar radius: IAU 2015 Resolution B3
 RADIUS_EARTH = 6_378_137.0  # m, equatorial: WGS 84
+FLATTENING_EARTH = 1 / 298.257_223_563  # WGS 84
 J2_EARTH = 1.082_626_68e-3  # unnormalised second zonal harmonic: EGM96
+J3_EARTH = -2.532_656_49e-6  # third: EGM96
+J4_EARTH = -1.619_621_59e-6  # fourth: EGM96
+DIPOLE_EARTH = (-1410.3e-9, 4545.5e-9, -29350.0e-9)  # T, g11, h11, g10 of the field's dipole in 2025: IGRF-14
+RADIUS_GEOMAGNETIC = 6_371_200.0  # m, reference radius of IGRF
 ROTATION_EARTH = 7.292_115_9e-5  # rad/s, sidereal: IERS 2010, to the digits used here
 
 STANDARD_GRAVITY = 9.806_65  # m/s2, exact: CGPM 1901, the g0 of specific impulse

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from sailviz import elements as orbital
-from sailviz.constants import AU, DAY, MU_SUN
+from sailviz.constants import AU, DAY, MU_SUN, YEAR
 
 J2000 = np.datetime64("2000-01-01T12:00:00", "ns")
 CENTURY = 36_525 * DAY
@@ -50,6 +50,16 @@ PLANETS = tuple(_MEAN)
 
 def _seconds_since_j2000(epoch: np.datetime64) -> float:
     return float((np.datetime64(epoch, "ns") - J2000) / np.timedelta64(1, "ns")) * 1e-9
+
+
+def days_since_j2000(epoch) -> float:
+    """Days of 86,400 s from J2000 to an epoch (np.datetime64, UTC)."""
+    return _seconds_since_j2000(epoch) / DAY
+
+
+def decimal_year(epoch) -> float:
+    """The epoch as a Julian year, e.g. 2019.96."""
+    return 2000.0 + _seconds_since_j2000(epoch) / YEAR
 
 
 def planet_elements(name, seconds):
@@ -126,15 +136,46 @@ def planet_orbit(name, epoch=None, points=361):
     return orbital.state(a, e, i, node, argument, np.linspace(0, 2 * np.pi, points), MU_SUN)[0]
 
 
+# The Sun of the Astronomical Almanac's low-precision formulae (section C): deg at J2000 and deg per day
+SUN_MEAN_LONGITUDE = (280.460, 0.9856474)
+SUN_MEAN_ANOMALY = (357.528, 0.9856003)
+SUN_OBLIQUITY = (23.439, -0.0000004)
+SUN_CENTRE = (1.915, 0.020)  # deg, on sin g and sin 2g
+
+
 def sun_position(epoch, time):
     """Geocentric position (n, 3) m of the Sun, equator of date, at times (n,) s after the epoch.
 
     Source: low-precision formulae of the Astronomical Almanac, section C: 0.01 deg between 1950 and 2050.
     """
     n = (_seconds_since_j2000(epoch) + np.asarray(time, dtype=float)) / DAY
-    g = np.radians(357.528 + 0.9856003 * n)
-    longitude = np.radians(280.460 + 0.9856474 * n + 1.915 * np.sin(g) + 0.020 * np.sin(2 * g))
-    obliquity = np.radians(23.439 - 0.0000004 * n)
+    g, mean_longitude, obliquity = (
+        np.radians(start + rate * n) for start, rate in (SUN_MEAN_ANOMALY, SUN_MEAN_LONGITUDE, SUN_OBLIQUITY)
+    )
+    first, second = np.radians(SUN_CENTRE)
+    longitude = mean_longitude + first * np.sin(g) + second * np.sin(2 * g)
     distance = AU * (1.00014 - 0.01671 * np.cos(g) - 0.00014 * np.cos(2 * g))
     direction = [np.cos(longitude), np.cos(obliquity) * np.sin(longitude), np.sin(obliquity) * np.sin(longitude)]
     return (distance * np.array(direction)).T
+
+
+def earth_rotation_angle(epoch, time=0.0):
+    """Earth rotation angle, rad in [0, 2 pi), at times (n,) s after the epoch, with UT1 = UTC (below 0.004 deg).
+
+    Source: IAU 2000 resolution B1.8. Counted from the celestial intermediate origin; maps and frames of the equinox
+    want `greenwich_sidereal_time`.
+    """
+    days = _seconds_since_j2000(epoch) / DAY + np.asarray(time, dtype=float) / DAY
+    return np.remainder(2 * np.pi * (np.remainder(days, 1.0) + 0.7790572732640 + 0.00273781191135448 * days), 2 * np.pi)
+
+
+def greenwich_sidereal_time(epoch, time=0.0):
+    """Right ascension, rad in [0, 2 pi), of the Greenwich meridian, mean equinox of date, in which `sun_position`
+    speaks too, at times (n,) s after the epoch.
+
+    Source: the precession that N. Capitaine et al., Astron. Astrophys. 412, 567 (2003) add to the Earth rotation angle,
+    without its terms below 0.1 arcsec in this century.
+    """
+    centuries = (_seconds_since_j2000(epoch) + np.asarray(time, dtype=float)) / CENTURY
+    arcseconds = 0.014506 + (4612.156534 + 1.3915817 * centuries) * centuries
+    return np.remainder(earth_rotation_angle(epoch, time) + np.radians(arcseconds / 3600), 2 * np.pi)

@@ -1,0 +1,104 @@
+"""Quantities around the Earth on (latitude, local time, altitude, solar level), as one flat row for compiled code.
+
+Layout from the row's place `at` on: HEADER numbers (sizes, altitudes, solar levels), then the nodes with the quantities
+innermost, the solar levels next to them and the first local time repeated after the last, so that one cell lies in
+eight short runs of memory and needs no modulo.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sailviz.compiled import inlined
+
+LATITUDES, TIMES, ALTITUDES, LEVELS = 0, 1, 2, 3  # how many
+LOWEST, PER_METRE, FIRST_LEVEL = 4, 5, 6  # altitude m, its nodes per m, where the solar levels begin
+MOST_LEVELS = 10
+HEADER = FIRST_LEVEL + MOST_LEVELS
+
+
+def flat(values, altitudes, levels):
+    """The row of a table. values (levels, latitudes, local times, altitudes, quantities): latitudes evenly from -90 to
+    90 deg, local times evenly from midnight on, altitudes (k,) m evenly, levels (l,) F10.7 upwards -> (n,)."""
+    levels = np.atleast_1d(np.asarray(levels, dtype=float))
+    if len(levels) > MOST_LEVELS or np.any(np.diff(levels) <= 0):
+        raise ValueError(f"solar levels must increase and be at most {MOST_LEVELS}, not {levels.tolist()}")
+    header = np.zeros(HEADER)
+    header[LATITUDES], header[TIMES], header[ALTITUDES], header[LEVELS] = *values.shape[1:4], len(levels)
+    header[LOWEST] = altitudes[0]
+    header[PER_METRE] = (len(altitudes) - 1) / (altitudes[-1] - altitudes[0])
+    header[FIRST_LEVEL : FIRST_LEVEL + len(levels)] = levels
+    nodes = np.concatenate([values, values[:, :, :1]], axis=2)
+    return np.concatenate([header, np.moveaxis(nodes, 0, 3).astype(float).ravel()])
+
+
+def places(*arguments):
+    """Arguments that broadcast, as the rows of one array (k, n), and the shape they have together."""
+    together = np.broadcast_arrays(*(np.asarray(argument, dtype=float) for argument in arguments))
+    return np.array(together).reshape(len(together), -1), together[0].shape
+
+
+@inlined
+def fraction(value, count):
+    """Interval and weight of a place counted in nodes, held at the first and the last of count nodes; NaN goes to the
+    first, which keeps it inside the table."""
+    last = count - 1.0
+    place = value if value > 0.0 else 0.0
+    place = place if place < last else last
+    whole = int(place)
+    whole = whole if whole < int(count) - 2 else int(count) - 2
+    return whole, place - whole
+
+
+@inlined
+def cell(p, at, latitude, local_time, altitude, f107, width):
+    """Where a place lies: index of the cell's first node, what to add for the next latitude, local time and altitude,
+    the three weights, and the weight of the next solar level. Angles rad, local time 0 at midnight and of any number of
+    turns, altitude m; width : quantities per node."""
+    latitudes, times, altitudes, levels = p[at + LATITUDES], p[at + TIMES], p[at + ALTITUDES], int(p[at + LEVELS])
+    i, wi = fraction((latitude * (1.0 / np.pi) + 0.5) * (latitudes - 1.0), latitudes)
+    turns = local_time * (0.5 / np.pi)
+    j, wj = fraction((turns - np.floor(turns)) * times, times + 1.0)
+    k, wk = fraction((altitude - p[at + LOWEST]) * p[at + PER_METRE], altitudes)
+    level, weight = 0, 0.0
+    if levels > 1:
+        first = at + FIRST_LEVEL
+        while level < levels - 2 and f107 >= p[first + level + 1]:
+            level += 1
+        low, high = p[first + level], p[first + level + 1]
+        weight = (f107 - low) / (high - low)
+        weight = weight if weight > 0.0 else 0.0
+        weight = weight if weight < 1.0 else 1.0
+    step = levels * width
+    column = int(altitudes) * step
+    row = (int(times) + 1) * column
+    n = at + HEADER + i * row + j * column + k * step + level * width
+    # unsigned, which spares a test for a negative index at each of the 32 nodes read: a third of the time
+    return np.uint64(n), np.uint64(row), np.uint64(column), np.uint64(step), wi, wj, wk, weight
+
+
+@inlined
+def trilinear(p, n, row, column, step, wi, wj, wk):
+    """The quantity at a place of the cell whose first node is p[n]."""
+    a = p[n] + wk * (p[n + step] - p[n])
+    n += column
+    b = p[n] + wk * (p[n + step] - p[n])
+    n += row
+    d = p[n] + wk * (p[n + step] - p[n])
+    n -= column
+    c = p[n] + wk * (p[n + step] - p[n])
+    a += wj * (b - a)
+    c += wj * (d - c)
+    return a + wi * (c - a)
+
+
+@inlined
+def quantity(p, place, which, width):
+    """Quantity number `which` of `width` at a place that `cell` found, linear between solar levels too; where the
+    lower level is met exactly the next is not read, as there may be none."""
+    n, row, column, step, wi, wj, wk, weight = place
+    n += np.uint64(which)
+    value = trilinear(p, n, row, column, step, wi, wj, wk)
+    if weight > 0.0:
+        value += weight * (trilinear(p, n + np.uint64(width), row, column, step, wi, wj, wk) - value)
+    return value

@@ -170,7 +170,7 @@ def descend(
     given = setting(force_profile, drag_area, air, brake_floor, inclination, mean_radius, corotation)
     craft = craft_of(given, mass, length, start_altitude, end_altitude, drag_area)
     edges = craft.edges(end_altitude, start_altitude, FINE)
-    time = np.concatenate([[0.0], np.cumsum(craft.stages(edges))])
+    time = np.concatenate([[0.0], np.cumsum(craft.stages(edges, 6))])
     return Descent(time, edges, craft.brake(edges), craft.drag(edges))
 
 

@@ -11,7 +11,7 @@ from sailviz.design.decay_profiles import SPEED_EXPONENT, ForceProfile, constant
 
 BRAKE_FLOOR = 200e3  # m, the brake is off below: molecular ions, and drag is stronger anyway
 PANEL = 100e3  # m, longest stretch of altitude under one Gauss-Legendre rule
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(40)
+RULES = {count: np.polynomial.legendre.leggauss(count) for count in (40, 6)}  # for a PANEL, and for a few km
 
 
 def mean_radius_offset(semi_major_axis, inclination):
@@ -79,10 +79,11 @@ class Craft:
         inside = [k for k in inside if lower < k < upper]
         return np.unique(np.concatenate([pieces, inside]))[::-1]
 
-    def stages(self, edges):
-        """Time in s that each stretch between falling altitudes takes."""
+    def stages(self, edges, count=40):
+        """Time in s that each stretch between falling altitudes takes, by `count` nodes of RULES."""
+        nodes, weights = RULES[count]
         middle, half = 0.5 * (edges[:-1] + edges[1:]), 0.5 * (edges[:-1] - edges[1:])
-        return half * (self.slowness(middle[:, None] + half[:, None] * NODES) @ WEIGHTS)
+        return half * (self.slowness(middle[:, None] + half[:, None] * nodes) @ weights)
 
 
 class Air:

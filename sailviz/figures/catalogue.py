@@ -102,4 +102,30 @@ CATALOGUE = {
         "analytic",
         "escape",
     ),
+    "drag-profile": Entry(
+        "Plasma brake: drag per length of tether over altitude, and the shapes that stand for it",
+        f"{OURS}; force law reconstructed after Janhunen (2014), ionosphere of IRI-2020; topside models differ by more "
+        "than the band near solar maximum",
+        (12, 5.8),
+        (1, 2),
+        "deorbit",
+        "drag_profile",
+    ),
+    "deorbit": Entry(
+        "Bringing 260 kg down: a plasma brake of 5 km against chemical and electric thrusters",
+        f"{OURS}; brake at −1 kV, bands: plasma density × 0.5 to × 2; 1 to 2 kg of brake hardware is an assumption; "
+        "perigee lowered to 60 km, spiral and brake to 300 km",
+        (12.5, 6.2),
+        (1, 2),
+        "deorbit",
+        "deorbit",
+    ),
+    "lifetime": Entry(
+        "How long 100 kg with a plasma brake stay up, over tether length and altitude",
+        f"{OURS}; −1 kV, neutral drag on Cd A = 2.2 m², to 120 km, constant solar level; white: rules of 5 and 25 years",
+        (13, 5.4),
+        (1, 3),
+        "deorbit",
+        "lifetime",
+    ),
 }

@@ -14,10 +14,11 @@ from functools import cache
 import numpy as np
 
 from sailviz.constants import ATOMIC_MASS, MU_EARTH, RADIUS_EARTH
+from sailviz.environment import ionosphere
 from sailviz.propulsion.plasma_brake import force_per_length
 from sailviz.shipped import shipped_folder
 
-LEVELS = {"min2019": 70.0, "mid2014": 145.0, "max2001": 193.0}  # solar level -> F10.7 in solar flux units
+LEVELS = ionosphere.LEVELS  # solar level -> F10.7 in solar flux units
 INCLINATIONS = (97.8, 51.6)  # deg, of the shipped orbit averages
 BAND = (0.5, 1.0, 2.0)  # plasma density over the model's: topside models differ by this much and, near maximum, more
 POLAR = np.radians(INCLINATIONS[0])
@@ -158,6 +159,43 @@ def shipped_profile(level="min2019", inclination=POLAR) -> ForceProfile:
     plasma = Plasma(altitude, columns[stem + "neff_m3"], columns[stem + "mi_u"] * ATOMIC_MASS)
     force = 1e-9 * columns[stem + "f1kV_nN_per_m"]
     return tabulated(altitude, force, f"IRI-2020 {level}, {near[0]:g} deg", plasma)
+
+
+def _panels(edges):
+    """Nodes and weights (sum 1) of the mean over a stretch that is smooth between the edges of a table's cells."""
+    edges = np.asarray(edges)
+    nodes, weights = np.polynomial.legendre.leggauss(4)
+    middle, half = 0.5 * (edges[1:] + edges[:-1]), 0.5 * (edges[1:] - edges[:-1])
+    return (middle[:, None] + half[:, None] * nodes).ravel(), (half[:, None] * weights).ravel() / (edges[-1] - edges[0])
+
+
+def averaged_profile(inclination, f107, voltage=1000.0, wire_radius=1e-3) -> ForceProfile:
+    """From the ionosphere table for any orbit, 200-1500 km every 25 km: the force, not the density, averaged over the
+    latitudes of a circular orbit and over local time.
+
+    inclination : rad. f107 : sfu, 70-193. voltage : V (absolute), wire_radius : m. The table is averaged over longitude
+    and season already, and the force is concave in the density: 1 to 5 % above the `shipped_profile` of that level.
+    """
+    if not ionosphere.in_table(500e3, f107):
+        lowest, highest = min(LEVELS.values()), max(LEVELS.values())
+        raise ValueError(f"the ionosphere table holds F10.7 from {lowest:g} to {highest:g}, not {f107:g}")
+    altitude = np.arange(ionosphere.LOWEST, ionosphere.HIGHEST + 1, 25e3)
+    tilt = np.arcsin(np.abs(np.sin(inclination)))  # the latitudes end here
+    rows = np.radians(np.arange(-90, 91, 10))
+    crossed = rows[np.abs(rows) < tilt]
+    kinks = [-np.pi / 2, *np.arcsin(np.sin(crossed) / np.sin(tilt)), np.pi / 2] if tilt > 0 else [0.0, 1.0]
+    along, share = _panels(kinks)
+    hour, weight = _panels(np.radians(np.arange(0, 361, 45)))
+    share = share[:, None] * weight
+    latitude = np.arcsin(np.sin(tilt) * np.sin(along))
+    density, mass = ionosphere.density(latitude[:, None, None], hour[:, None], altitude, f107)
+    speed = np.sqrt(MU_EARTH / (RADIUS_EARTH + altitude))
+    force = np.tensordot(share, force_per_length(density, mass, speed, voltage, wire_radius), 2)
+    mean = np.tensordot(share, density, 2)
+    plasma = Plasma(altitude, mean, np.tensordot(share, density * mass, 2) / mean, voltage, wire_radius)
+    for _ in range(8):  # towards the density that gives the averaged force
+        plasma = replace(plasma, density=plasma.density * (force / plasma.force()) ** (1 / DENSITY_EXPONENT))
+    return tabulated(altitude, force, f"IRI-2020 at F10.7 {f107:g}, {np.degrees(inclination):g} deg", plasma)
 
 
 @dataclass(frozen=True)

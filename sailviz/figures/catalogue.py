@@ -122,7 +122,7 @@ CATALOGUE = {
     ),
     "lifetime": Entry(
         "How long 100 kg with a plasma brake stay up, over tether length and altitude",
-        f"{OURS}; −1 kV, neutral drag on Cd A = 2.2 m², to 120 km, constant solar level; white: rules of 5 and 25 years",
+        f"{OURS}; −1 kV, drag on Cd A = 2.2 m², to 120 km, constant solar level; white: rules of 5 and 25 years",
         (13, 5.4),
         (1, 3),
         "deorbit",

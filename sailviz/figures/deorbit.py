@@ -71,7 +71,7 @@ def deorbit(pen, left, right):
     h = np.linspace(400e3, 1200e3, 161)
     km = h / 1e3
     burn, thrust = s.series[3], s.series[4]
-    for (name, isp), at in zip(CHEMICAL.items(), (800e3, 800e3, 1000e3), strict=True):
+    for (name, isp), at in zip(CHEMICAL.items(), (800e3, 800e3, 660e3), strict=True):
         left.plot(km, disposal.chemical(MASS, h, isp).propellant, color=burn)
         _name(left, at, disposal.chemical(MASS, at, isp).propellant, name, burn, below=isp == 300)
     for name, isp in ELECTRIC.items():

@@ -8,7 +8,8 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 from sailviz.constants import DAY, MU_EARTH, RADIUS_EARTH, YEAR
-from sailviz.design import decay
+from sailviz.design import decay, decay_drag
+from sailviz.environment import atmosphere
 
 POLAR, STATION = np.radians(97.8), np.radians(51.6)
 CUBESAT = (4.5, 300.0, 700e3, 500e3)  # kg, m, m, m
@@ -151,6 +152,20 @@ def test_density_band_goes_with_the_root():
     assert band.time / band.time[1] == pytest.approx(band.density_factor**-0.537, rel=0.01)
 
 
+def test_decay_through_the_ionosphere_averaged_here():
+    """The table's density, averaged over longitude and season, interpolated, and then the force averaged over local
+    time and latitude: 347.890, 105.698, 50.805 d by independent averages over many points."""
+    for (name, level), value in zip(decay.LEVELS.items(), (347.890, 105.698, 50.805), strict=True):
+        found = decay.averaged_profile(POLAR, level)
+        assert days(decay.decay_time(*CUBESAT, found)) == pytest.approx(value, rel=2e-5)
+        assert found.plasma.force() == pytest.approx(found(found.plasma.altitude), rel=1e-12)
+        assert found(700e3) / decay.shipped_profile(name)(700e3) == pytest.approx(1.03, abs=0.025)  # 1 to 5 % more
+    assert decay.averaged_profile(np.pi - POLAR, 100.0)(700e3) == decay.averaged_profile(POLAR, 100.0)(700e3)
+    assert decay.averaged_profile(0.0, 70.0)(700e3) > decay.averaged_profile(STATION, 70.0)(700e3)  # denser there
+    with pytest.raises(ValueError, match="70 to 193"):
+        decay.averaged_profile(POLAR, 250.0)
+
+
 # ---------------------------------------------------------------- corrections
 def test_mean_radius_of_an_oblate_earths_orbit():
     """Averages of propagated orbits: +4.395 km at 97.8 deg, -0.754 km at 51.6 deg, -9.35 km at the equator; second
@@ -193,21 +208,76 @@ def air_of(level):
     return lambda altitude: np.exp(spline(altitude))
 
 
-@pytest.mark.parametrize(
-    ("mass", "length", "drag_area", "start", "rows"),
-    [
-        (4.5, 300.0, 0.066, 700e3, ((597.8, 1.401), (70.79, 0.479), (24.76, 0.268))),
-        (100.0, 5e3, 2.2, 800e3, ((1050.0, 2.976), (159.0, 0.900), (52.6, 0.449))),
-    ],
-)
-def test_lifetimes_to_re_entry(mass, length, drag_area, start, rows):
-    """Years to 120 km at constant solar level, brake off below 200 km: drag alone to 1 %, with the brake to 0.3 %."""
-    for level, (drifting, braking) in zip(decay.LEVELS, rows, strict=True):
-        more = {"drag_area": drag_area, "air": air_of(level)}
+def own_air(level):
+    """What sailviz tabulates, for the solar flux and ap of the table above."""
+    return atmosphere.mean_profile(*{"min2019": (70, 5), "mid2014": (145, 10), "max2001": (200, 15)}[level])
+
+
+# Cd A m2, start, then per level: drag alone and brake with drag in years, altitude in km where both are equal
+LIFETIMES = [
+    (4.5, 300.0, 0.066, 700e3, ((597.8, 1.401, 242), (70.79, 0.479, 255), (24.76, 0.268, 267))),
+    (100.0, 5e3, 2.2, 800e3, ((1050.0, 2.976, 265), (159.0, 0.900, 283), (52.6, 0.449, 299))),
+]
+
+
+@pytest.mark.parametrize("air", [air_of, own_air])
+@pytest.mark.parametrize(("mass", "length", "drag_area", "start", "rows"), LIFETIMES)
+def test_lifetimes_to_re_entry(mass, length, drag_area, start, rows, air):
+    """To 120 km at constant solar level, brake off below 200 km: drag alone to 1 %, with the brake to 0.3 %."""
+    for level, (drifting, braking, _) in zip(decay.LEVELS, rows, strict=True):
+        more = {"drag_area": drag_area, "air": air(level)}
         alone = decay.decay_time(mass, 0.0, start, decay.REENTRY, None, **more)
         both = decay.decay_time(mass, length, start, decay.REENTRY, decay.shipped_profile(level), **more)
         assert alone / YEAR == pytest.approx(drifting, rel=0.01)
         assert both / YEAR == pytest.approx(braking, rel=0.003)
+
+
+@pytest.mark.parametrize(("mass", "length", "drag_area", "start", "rows"), LIFETIMES)
+def test_air_takes_over_from_the_brake_where_tabled(mass, length, drag_area, start, rows):
+    """To a kilometre; the forces are equal there and the brake leads above."""
+    for level, (_, _, km) in zip(decay.LEVELS, rows, strict=True):
+        profile, air = decay.shipped_profile(level), own_air(level)
+        found = decay_drag.crossover_altitude(length, profile, drag_area, air)
+        assert found / 1e3 == pytest.approx(km, abs=1)
+        way = decay.descend(mass, length, found + 4e3, found - 4e3, profile, drag_area=drag_area, air=air)
+        assert way.brake[0] > way.drag[0]
+        assert way.brake[-1] < way.drag[-1]
+        assert np.interp(-found, -way.altitude, way.brake / way.drag) == pytest.approx(1, abs=2e-3)
+    assert np.isnan(decay_drag.crossover_altitude(1e6, profile, 1e-6, air))
+
+
+def test_steady_sun_by_integration_is_the_quadrature():
+    air = atmosphere.mean_profile(70.0, 5.0, POLAR)
+    alone = decay.decay_time(4.5, 0.0, 700e3, decay.REENTRY, None, drag_area=0.066, air=air)
+    assert decay_drag.cycle_descent(4.5, 700e3, 2020, drag_area=0.066, f107=70.0).duration == pytest.approx(
+        alone, rel=5e-5
+    )
+    profile = decay.averaged_profile(POLAR, 70.0)
+    both = decay.decay_time(100.0, 5e3, 800e3, decay.REENTRY, profile, drag_area=2.2, air=air)
+    way = decay_drag.cycle_descent(100.0, 800e3, 2020, drag_area=2.2, length=5e3, f107=70.0)
+    assert way.duration == pytest.approx(both, rel=5e-5)
+    assert np.all((way.brake > 0) == (way.altitude >= 200e3))
+
+
+def test_decades_of_drag_see_the_cycles_mean_air():
+    """A descent of many cycles from any phase is within half a cycle of that through the density averaged over one."""
+    flux = 70 + 61.5 * (1 - np.cos(2 * np.pi * (np.arange(64) + 0.5) / 64))
+    known = [(level, *atmosphere.mean_profile(level, ap, POLAR)) for level, ap in
+             zip(atmosphere.LEVELS, atmosphere.GEOMAGNETIC, strict=True)]  # fmt: skip
+    log = np.log([density for *_, density in known])
+    mean = np.mean(np.exp([[np.interp(f, atmosphere.LEVELS, column) for column in log.T] for f in flux]), axis=0)
+    steady = decay.decay_time(4.5, 0.0, 700e3, decay.REENTRY, None, drag_area=0.066, air=(known[0][1], mean))
+    for year in (2020.0, 2025.5):
+        way = decay_drag.cycle_descent(4.5, 700e3, year, drag_area=0.066)
+        assert abs(way.duration - steady) < 5.5 * YEAR
+        assert way.duration > 5 * 11 * YEAR
+
+
+def test_short_descent_ends_sooner_when_it_starts_into_a_maximum():
+    rising, falling = (decay_drag.cycle_descent(4.5, 500e3, year, drag_area=0.066).duration for year in (2023, 2028))
+    assert rising < falling / 2
+    with pytest.raises(ValueError, match="70 to 200"):
+        decay_drag.cycle_descent(4.5, 500e3, 2023, drag_area=0.066, f107=300)
 
 
 def test_order_of_the_drag_path_by_a_flown_sail():

@@ -49,12 +49,23 @@ def test_drag_per_length_by_hand(change, expected):
     assert force_per_length(**TYPICAL | change) * 1e9 == pytest.approx(expected, abs=6e-6)
 
 
-def test_the_steps_of_the_force_law_by_hand():
-    """P = 4.48318e-8 Pa, Vi = 4.66363 V, lambda = 1.35725 m, Vt = 138.6345 V."""
-    p, v_i, width, v_t = 4.48318e-8, 4.66363, 1.35725, 138.6345
-    assert force_per_length(**TYPICAL) == pytest.approx(
-        3.864 * p * width * np.sqrt(v_t / 1000) * np.exp(-v_i / v_t), rel=1e-5
-    )
+# P Pa, Vi V, lambda m, Vt V where tabled, and the force nN/m that follows
+@pytest.mark.parametrize(
+    ("change", "p", "v_i", "sheath", "v_t", "expected"),
+    [
+        ({}, 4.48318e-8, 4.66363, 1.35725, 138.6345, 84.64620),
+        ({"density": 1e11}, 4.48318e-8 / 0.3, 4.66363, 0.74339, 151.2579, 161.87860),
+        ({"ion_mass": 1.00784 * ATOMIC_MASS}, 2.82413e-9, 0.29378, 1.35725, 138.6345, 5.50295),
+        ({"voltage": 2000.0}, 4.48318e-8, 4.66363, 1.35725 * np.sqrt(2), 264.5577, 118.81899),
+    ],
+)
+def test_the_steps_of_the_force_law_by_hand(change, p, v_i, sheath, v_t, expected):
+    """f = 3.864 P lambda sqrt(Vt / V) exp(-Vi / Vt) and Vt = V / ln(lambda / 1 mm), digits as tabled."""
+    voltage = change.get("voltage", 1000.0)
+    assert voltage / np.log(sheath / 1e-3) == pytest.approx(v_t, rel=2e-6)
+    by_hand = 3.864 * p * sheath * np.sqrt(v_t / voltage) * np.exp(-v_i / v_t)
+    assert by_hand * 1e9 == pytest.approx(expected, rel=1e-5)
+    assert force_per_length(**TYPICAL | change) == pytest.approx(by_hand, rel=1e-5)
 
 
 def test_five_kilometres_brake_with_the_published_0_43_millinewton():

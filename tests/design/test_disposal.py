@@ -90,3 +90,10 @@ def test_one_burn_is_down_in_half_a_revolution():
     assert way.time / 60 == pytest.approx(93.1 / 2, abs=0.05)
     assert way.controlled
     assert not disposal.electric(260, 800e3, 1500, 0.01).controlled
+
+
+def test_periods_of_circular_orbits():
+    """2 pi a / v: 5926.379 s at 700 km, 5676.978 s at 500 km."""
+    altitude = np.array([700e3, 500e3])
+    period = 2 * np.pi * (RADIUS_EARTH + altitude) / disposal.circular_speed(altitude)
+    assert period == pytest.approx([5926.379, 5676.978], abs=5.1e-4)

@@ -1,7 +1,7 @@
 """The Earth's shadow: as a cylinder, or with umbra and penumbra, and the share of a circular orbit that lies in it.
 
-The Earth is a sphere of its equatorial radius and has no air. At the poles the true limb lies 21 km lower, which a craft
-in low orbit crosses in up to 7 s; light bent by the air is left out.
+The Earth is a sphere of its equatorial radius and has no air. At the poles the true limb lies 21 km lower, which a
+craft in low orbit crosses in up to 7 s; light bent by the air is left out.
 """
 
 from __future__ import annotations

@@ -1,0 +1,323 @@
+"""Many flights of one craft under winds of their own: BLOCK flights march in step, one in each vector lane.
+
+All flights share start, steering and the times at which anything changes; each has its own wind and, from it and from
+where it is, its own voltage. Fixed Runge-Kutta steps land on every change. What is kept is sums and histograms at the
+output times, the ends of all flights, and whole histories of the first few.
+
+Any consistent units; `sailviz.uncertainty.ensembles` uses mu = 1 and the astronomical unit. A flight depends on the
+seed and its number alone, and blocks are added up in their order, so results do not depend on the number of threads.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from concurrent.futures import ThreadPoolExecutor
+from queue import SimpleQueue
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+from sailviz.compiled import _OPTIONS, compiled, inlined
+from sailviz.propagate import control as law
+from sailviz.propagate.ensemble_draws import (
+    DRAWN,
+    REPLAYED,
+    looked_up,
+    normal_quantile,
+    seed_stream,
+    uniform,
+)
+from sailviz.propagate.ensemble_motion import MERIDIAN, PLANE, step_in_plane, step_in_space
+
+BLOCK = 1024  # flights that march together: state rows stay in the second-level cache, histograms are met while hot
+BINS = 1024  # of a histogram, over twice the range of the first block: 0.2 % of that range each
+
+LANES = 64  # flights are taken in whole multiples of this
+
+# rows of a block's state: six of motion, see ensemble_motion; what drives it; sums over time; the wind's memory
+RHO, THETA, HEIGHT, U, V, W, FACTOR, VOLTAGE, PRESSURE = range(9)
+SUM_FACTOR, SUM_VOLTAGE, SUM_SATURATED, DEVIATE, LEVEL, ROWS = range(9, 15)
+SEEN = 9  # rows of which statistics are kept: those up to the pressure
+_PAIRS = [(a, b) for a in range(6) for b in range(a + 1)]  # of the covariance, then the variances of the other three
+MOMENTS = SEEN + len(_PAIRS) + 3 + 1  # means, these, and the share at the largest voltage
+
+ROOT, LINEAR = 0, 1  # thrust goes with the root of the drawn quantity (wind pressure) or with itself (irradiance)
+
+
+class Plan(NamedTuple):
+    """What all flights share, segment by segment; nothing changes inside a segment."""
+
+    start: np.ndarray  # (6,) rho, theta, z, u, v, w
+    span: np.ndarray  # (segments,) time
+    substeps: np.ndarray  # (segments,) int64, Runge-Kutta steps
+    strength: np.ndarray  # (segments, 6) radial, transverse, normal acceleration at distance 1: going as 1/r, as 1/r2
+    redraw: np.ndarray  # (segments,) bool, the wind changes at the start
+    new_level: np.ndarray  # (segments,) bool, the slow factor on the wind changes at the start
+    update: np.ndarray  # (segments,) bool, the voltage law acts at the start
+    output: np.ndarray  # (segments + 1,) row of the outputs that the start of the segment (the end of all) fills, or -1
+    aim: np.ndarray  # (segments, 2) distance and radial speed that the distance law leads back to
+    frame: int  # PLANE, ORBITAL or MERIDIAN
+    mu: float
+
+
+class Wind(NamedTuple):
+    """Where the pressure (or irradiance) of a flight comes from, one value for each redraw."""
+
+    kind: int  # GIVEN: rows of `values`; DRAWN: `table` at a normal deviate; REPLAYED: `table` from a random start
+    seed: int
+    memory: float  # correlation of successive deviates, 0 for independent redraws
+    first: float  # deviate of the table's first entry
+    inverse_step: float  # entries per unit of deviate
+    table: np.ndarray  # (k,)
+    spread: float  # standard deviation of the logarithm of the slow factor on all of these
+    values: np.ndarray  # (flights or 1, redraws or 1)
+    response: int  # ROOT or LINEAR
+
+
+class Swarm(NamedTuple):
+    """What `fly` keeps."""
+
+    moments: np.ndarray  # (outputs, MOMENTS) sums over flights, the first of deviations from the reference
+    counts: np.ndarray  # (outputs, SEEN, BINS) int64, empty if all flights are in `record`
+    low: np.ndarray  # (outputs, SEEN) lower end of the histograms
+    width: np.ndarray  # (outputs, SEEN) of a bin, 0 where the first block was all alike
+    record: np.ndarray  # (BLOCK or fewer, outputs, SEEN) the first flights whole
+    end: np.ndarray  # (flights, 6)
+    mean: np.ndarray  # (flights, 3) averages over time: factor, voltage, share of time at the largest voltage
+
+
+# sums over lanes may be taken in any order that the compiler fixes: the order is the same in every run
+_summing = numba.njit(_nrt=False, forceinline=True, **{**_OPTIONS, "fastmath": {"contract", "nsz", "reassoc"}})
+
+
+@_summing
+def _mean_product(a, b, a0, b0, used):
+    total = 0.0
+    for i in range(used):
+        total += (a[i] - a0) * (b[i] - b0)
+    return total
+
+
+@_summing
+def _sum(a, a0, used):
+    total = 0.0
+    for i in range(used):
+        total += a[i] - a0
+    return total
+
+
+@inlined
+def _observe(s, used, o, reference, c, record, moments, low, width, counts):
+    """Add the lanes to the sums, histograms and records of output o."""
+    m, place = moments[o], SEEN
+    for a in range(SEEN):
+        m[a] += _sum(s[a], reference[o, a], used)
+        for b in range(a + 1):
+            if a < 6 or a == b:
+                m[place] += _mean_product(s[a], s[b], reference[o, a], reference[o, b], used)
+                place += 1
+    if c[law.KIND] != law.CONSTANT:
+        for i in range(used):
+            m[place] += s[VOLTAGE, i] >= c[law.MAXIMUM]
+    if counts.shape[0] > 0:
+        for a in range(SEEN):
+            if width[o, a] > 0.0:
+                start, inverse, row, bins = low[o, a], 1.0 / width[o, a], s[a], counts[o, a]
+                for i in range(used):
+                    bins[int(min(max((row[i] - start) * inverse, 0.0), BINS - 1.0))] += 1
+    for i in range(min(used, record.shape[0])):
+        for a in range(SEEN):
+            record[i, o, a] = s[a, i]
+
+
+@inlined
+def _redraw(s, lanes, words, begin, k, first, kind, memory, low, inverse_step, table, values):
+    """The wind of redraw k."""
+    fresh = np.sqrt(1.0 - memory * memory)
+    pressure, deviate, level = s[PRESSURE], s[DEVIATE], s[LEVEL]
+    if kind == DRAWN:
+        for i in range(lanes):
+            z = normal_quantile(uniform(words, i))
+            deviate[i] = z if k == 0 else memory * deviate[i] + fresh * z
+        for i in range(lanes):
+            pressure[i] = level[i] * looked_up(deviate[i], low, inverse_step, table)
+    elif kind == REPLAYED:
+        for i in range(lanes):
+            pressure[i] = level[i] * table[begin[i] + k]
+    else:
+        column = min(k, values.shape[1] - 1)
+        for i in range(lanes):
+            pressure[i] = level[i] * values[min(first + i, values.shape[0] - 1), column]
+
+
+@inlined
+def _control(s, lanes, aim_r, aim_u, frame, c):
+    """The voltage law acts."""
+    for i in range(lanes):
+        r, u = s[RHO, i], s[U, i]
+        if frame != PLANE:
+            z = s[HEIGHT, i]
+            size = np.sqrt(r * r + z * z)
+            u, r = (r * u + z * s[W, i]) / size, size
+        s[VOLTAGE, i] = law.voltage(s[VOLTAGE, i], s[PRESSURE, i], np.nan, r, u, aim_r, aim_u, c)
+
+
+@inlined
+def _drive(s, lanes, c, response):
+    """Thrust factors from wind and voltage."""
+    if response == LINEAR:
+        inverse = 1.0 / c[law.P_REF]
+        for i in range(lanes):
+            s[FACTOR, i] = s[PRESSURE, i] * inverse
+    else:
+        for i in range(lanes):
+            s[FACTOR, i] = law.thrust_factor(s[VOLTAGE, i], s[PRESSURE, i], c[law.WIND], c)
+
+
+@compiled
+def fly_block(
+    first, used, start, span, substeps, strength, redraw, new_level, update, output, aim, frame,
+    mu, kind, seed, memory, low_deviate, inverse_step, table, spread, values, response,
+    c, reference, record, moments, low, width, counts, end, mean,
+):  # fmt: skip
+    """Fly the flights first .. first + used - 1 from start to end. `Plan` and `Wind` taken apart, the row of the
+    control law, what to subtract from the sums (outputs, SEEN), and the arrays of `Swarm` to fill: record, moments and
+    counts of this block, rows of end and mean of these flights."""
+    lanes = (used + LANES - 1) // LANES * LANES  # whole vectors, the last ones idle
+    s, words, begin = np.zeros((ROWS, lanes)), np.empty((4, lanes), np.uint64), np.zeros(lanes, np.int64)
+    # a tuple: numbers in an array would be read again for every lane, in case that writing to `s` had changed them
+    law_row = (c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8], c[9], c[10], c[11])
+    redraws = 0
+    for n in range(len(span)):
+        redraws += redraw[n]
+    for i in range(lanes):
+        for a in range(6):
+            s[a, i] = start[a]
+        s[VOLTAGE, i], s[LEVEL, i] = np.nan, 1.0
+        seed_stream(words, i, np.uint64(seed), np.uint64(first + i))
+        if kind == REPLAYED:
+            begin[i] = int(uniform(words, i) * (len(table) - redraws + 1))
+    k = 0
+    total = 0.0
+    for n in range(len(span) + 1):
+        ended = n == len(span)  # a turn for the outputs alone: so the compiler meets their code once
+        if not ended and new_level[n]:
+            for i in range(lanes):
+                s[LEVEL, i] = np.exp(spread * normal_quantile(uniform(words, i)))
+        if not ended and redraw[n]:
+            _redraw(s, lanes, words, begin, k, first, kind, memory, low_deviate, inverse_step, table, values)
+            k += 1
+        if not ended and update[n]:
+            _control(s, lanes, aim[n, 0], aim[n, 1], frame, law_row)
+        if not ended and (redraw[n] or update[n]):
+            _drive(s, lanes, law_row, response)
+        if output[n] >= 0:
+            _observe(s, used, output[n], reference, law_row, record, moments, low, width, counts)
+        if ended:
+            break
+        h = span[n] / substeps[n]
+        g = strength[n]
+        for _ in range(substeps[n]):
+            if frame == PLANE:
+                step_in_plane(s, s[FACTOR], lanes, h, g[0], g[1], g[3], g[4], mu)
+            else:
+                step_in_space(s, s[FACTOR], lanes, h, g[0], g[1], g[2], g[3], g[4], g[5], mu, frame == MERIDIAN)
+        total += span[n]
+        for i in range(lanes):
+            s[SUM_FACTOR, i] += span[n] * s[FACTOR, i]
+            s[SUM_VOLTAGE, i] += span[n] * s[VOLTAGE, i]
+        if c[law.KIND] != law.CONSTANT:
+            for i in range(lanes):
+                s[SUM_SATURATED, i] += span[n] if s[VOLTAGE, i] >= c[law.MAXIMUM] else 0.0
+    for i in range(used):
+        for a in range(6):
+            end[i, a] = s[a, i]
+        for a in range(3):
+            mean[i, a] = s[SUM_FACTOR + a, i] / total
+
+
+_NO_COUNTS = np.zeros((0, SEEN, BINS), np.int32)
+
+
+def record_flights(plan: Plan, wind: Wind, control, flights, reference=None):
+    """A Swarm of at most BLOCK flights, all of them in its record. reference as in `fly`."""
+    outputs = int(plan.output.max()) + 1
+    blank = np.zeros((outputs, SEEN))
+    record, moments = np.empty((flights, outputs, SEEN)), np.zeros((outputs, MOMENTS))
+    end, mean = np.empty((flights, 6)), np.empty((flights, 3))
+    reference = blank if reference is None else reference
+    fly_block(0, flights, *plan, *wind, control, reference, record, moments, blank, blank, _NO_COUNTS, end, mean)
+    return Swarm(moments, _NO_COUNTS, blank, blank, record, end, mean)
+
+
+def fly(plan: Plan, wind: Wind, control, reference, flights, threads=1, progress=None) -> Swarm:
+    """Fly an ensemble. control : row of `sailviz.propagate.control`, its MU in the units of the plan; reference
+    (outputs, SEEN) : values near the means, subtracted before squares are summed. progress : called with the number of
+    flights done."""
+    outputs = len(reference)
+    head = record_flights(plan, wind, control, min(flights, BLOCK), reference)
+    if flights <= BLOCK:
+        return head
+    least, most = head.record.min(axis=0), head.record.max(axis=0)
+    low, width = least - 0.5 * (most - least), 2.0 * (most - least) / BINS
+    end, mean = np.empty((flights, 6)), np.empty((flights, 3))
+    total = np.zeros((outputs, MOMENTS))
+    shelf = SimpleQueue()  # of histograms, one for each thread
+    for _ in range(threads):
+        shelf.put(np.zeros((outputs, SEEN, BINS), np.int32))
+    nothing = np.empty((0, outputs, SEEN))
+
+    def block(first):
+        used = min(BLOCK, flights - first)
+        moments, counts = np.zeros((outputs, MOMENTS)), shelf.get()
+        part = slice(first, first + used)
+        fly_block(
+            first, used, *plan, *wind, control, reference, nothing, moments, low, width, counts, end[part], mean[part]
+        )
+        shelf.put(counts)
+        return moments
+
+    with ThreadPoolExecutor(threads) as pool:
+        waiting, ahead = deque(), iter(range(0, flights, BLOCK))
+        done = 0
+        while True:
+            while len(waiting) < 2 * threads and (first := next(ahead, None)) is not None:
+                waiting.append(pool.submit(block, first))
+            if not waiting:
+                break
+            total += waiting.popleft().result()  # in order of flights, whoever finished first
+            done = min(done + BLOCK, flights)
+            if progress:
+                progress(done)
+    counts = sum(shelf.get().astype(np.int64) for _ in range(threads))
+    return Swarm(total, counts, low, width, head.record, end, mean)
+
+
+def covariance(moments, flights):
+    """Means minus reference (outputs, SEEN), covariance of the motion (outputs, 6, 6) and standard deviations of the
+    other three (outputs, 3), with flights - 1 in the denominator (0 for a single flight)."""
+    mean = moments[:, :SEEN] / flights
+    scale = flights / max(flights - 1, 1)
+    cov = np.empty((len(moments), 6, 6))
+    for place, (a, b) in enumerate(_PAIRS):
+        value = scale * (moments[:, SEEN + place] / flights - mean[:, a] * mean[:, b])
+        cov[:, a, b] = cov[:, b, a] = value
+    others = scale * (moments[:, SEEN + len(_PAIRS) : -1] / flights - mean[:, 6:SEEN] ** 2)
+    return mean, cov, np.sqrt(np.maximum(others, 0.0))
+
+
+def percentiles(swarm: Swarm, levels):
+    """(levels, outputs, SEEN). Exact where all flights are recorded; else read from the histograms, to a bin's width at
+    worst, and no further out than half the range of the first block beyond its ends."""
+    if not len(swarm.counts):
+        return np.percentile(swarm.record, levels, axis=0)
+    below = np.concatenate([np.zeros((*swarm.counts.shape[:2], 1)), np.cumsum(swarm.counts, axis=2)], axis=2)
+    out = np.empty((len(levels), *swarm.low.shape))
+    for o in range(len(swarm.low)):
+        for a in range(SEEN):
+            out[:, o, a] = swarm.low[o, a]
+            if swarm.width[o, a] > 0:
+                wanted = np.asarray(levels) / 100 * below[o, a, -1]
+                out[:, o, a] += swarm.width[o, a] * np.interp(wanted, below[o, a], np.arange(BINS + 1))
+    return out

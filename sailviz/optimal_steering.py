@@ -280,7 +280,7 @@ def towards_primer_analytic(p, at, ux, uy, uz, lx, ly, lz):
     if c == 0.0 and s == 0.0:
         return tx, ty, tz, 0.0
     along, across, on = analytic_film(p[at + 1], p[at + 2], c, s)
-    return along * ux + across * tx, along * uy + across * ty, along * uz + across * tz, float(on)
+    return along * ux + across * tx, along * uy + across * ty, along * uz + across * tz, 1.0 if on else 0.0
 
 
 @compiled

@@ -1,0 +1,118 @@
+"""Which way thrust changes an orbit fastest: gradients of orbital elements with respect to velocity.
+
+A sail steered to the most thrust along such a primer changes the element at the best rate of that moment,
+a_c (r_E / r)^k |primer| h. Gauss' equations in vector form; source: thesis, chapter 6, of which the text was not
+readable: re-derived, checked against differences of the elements.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sailviz.compiled import inlined
+
+ENERGY, SEMI_MAJOR_AXIS, ECCENTRICITY, INCLINATION, RAAN, ARGUMENT = range(6)
+GOALS = {
+    "energy": ENERGY,
+    "semi-major-axis": SEMI_MAJOR_AXIS,
+    "eccentricity": ECCENTRICITY,
+    "inclination": INCLINATION,
+    "raan": RAAN,
+    "argument": ARGUMENT,
+}
+LYAPUNOV_NUMBERS = 15  # of `lyapunov_primer`: five targets, five weights, five scales
+SMALL = 1e-12  # an eccentricity, or sine of an inclination, below which there is no apsis or node
+
+
+@inlined
+def locally_optimal_primer(kind, x, y, z, vx, vy, vz, mu):
+    """d(element) / d(velocity), the primer that increases an element, inertial; negate it to decrease.
+
+    kind : one of GOALS; energy in m2/s2, semi-major axis in m, angles in rad, per m/s. On a circle eccentricity grows
+    from a periapsis here, in the reference plane inclination grows from a node here; the node's own angle and the
+    argument of periapsis have no gradient there (0). On a planar orbit "argument" is the longitude of periapsis.
+    """
+    r = np.sqrt(x * x + y * y + z * z)
+    ux, uy, uz = x / r, y / r, z / r
+    v2 = vx * vx + vy * vy + vz * vz
+    if kind == ENERGY:
+        return vx, vy, vz
+    if kind == SEMI_MAJOR_AXIS:
+        a = 1.0 / (2.0 / r - v2 / mu)
+        k = 2.0 * a * a / mu
+        return k * vx, k * vy, k * vz
+    hx, hy, hz = y * vz - z * vy, z * vx - x * vz, x * vy - y * vx
+    h = np.sqrt(hx * hx + hy * hy + hz * hz)
+    wx, wy, wz = hx / h, hy / h, hz / h  # h_hat
+    sine = np.sqrt(wx * wx + wy * wy)
+    if kind in (INCLINATION, RAAN):
+        if kind == RAAN and sine < SMALL:
+            return 0.0, 0.0, 0.0
+        node_x, node_y, node_z = ux, uy, uz
+        if sine >= SMALL:
+            node_x, node_y, node_z = -wy / sine, wx / sine, 0.0
+        k = (x * node_x + y * node_y + z * node_z) / h
+        if kind == RAAN:
+            k = z / (h * sine * sine)  # r sin(u) = z / sin(i)
+        return k * wx, k * wy, k * wz
+    radial = x * vx + y * vy + z * vz
+    along = v2 / mu - 1.0 / r
+    ex, ey, ez = along * x - radial / mu * vx, along * y - radial / mu * vy, along * z - radial / mu * vz
+    e = np.sqrt(ex * ex + ey * ey + ez * ez)
+    if kind == ARGUMENT and e < SMALL:
+        return 0.0, 0.0, 0.0
+    px, py, pz = ux, uy, uz
+    if e >= SMALL:
+        px, py, pz = ex / e, ey / e, ez / e
+    qx, qy, qz = px, py, pz
+    if kind == ARGUMENT:  # the eccentricity vector turns towards h_hat x e_hat
+        qx, qy, qz = wy * pz - wz * py, wz * px - wx * pz, wx * py - wy * px
+    # d(e_vec) . q for fixed q: [2 (r . q) v - (v . q) r - (r . v) q] / mu
+    rq, vq = x * qx + y * qy + z * qz, vx * qx + vy * qy + vz * qz
+    lx = (2.0 * rq * vx - vq * x - radial * qx) / mu
+    ly = (2.0 * rq * vy - vq * y - radial * qy) / mu
+    lz = (2.0 * rq * vz - vq * z - radial * qz) / mu
+    if kind == ARGUMENT:
+        lx, ly, lz = lx / e, ly / e, lz / e
+        if sine >= SMALL:  # the argument counts from the node, which moves as the plane turns
+            k = -wz * z / (h * sine * sine)
+            lx, ly, lz = lx + k * wx, ly + k * wy, lz + k * wz
+    return lx, ly, lz
+
+
+@inlined
+def lyapunov_primer(x, y, z, vx, vy, vz, mu, p, at):
+    """-dV/d(velocity) of V = sum W_i ((x_i - T_i) / S_i)^2 over the modified equinoctial elements p, f, g, h, k,
+    inertial: the primer that brings the orbit towards the target elements.
+
+    p[at:] : targets T (5), weights W (5), scales S (5). Prograde orbits: h and k grow without bound at 180 deg.
+    """
+    r = np.sqrt(x * x + y * y + z * z)
+    ux, uy, uz = x / r, y / r, z / r
+    hx, hy, hz = y * vz - z * vy, z * vx - x * vz, x * vy - y * vx
+    size = np.sqrt(hx * hx + hy * hy + hz * hz)
+    wx, wy, wz = hx / size, hy / size, hz / size
+    semi = size * size / mu
+    h, k = -wy / (1.0 + wz), wx / (1.0 + wz)
+    s2 = 1.0 + h * h + k * k
+    fx, fy, fz = (1.0 + h * h - k * k) / s2, 2.0 * h * k / s2, -2.0 * k / s2
+    gx, gy, gz = 2.0 * h * k / s2, (1.0 - h * h + k * k) / s2, 2.0 * h / s2
+    cos, sin = ux * fx + uy * fy + uz * fz, ux * gx + uy * gy + uz * gz  # of the true longitude
+    along = (vx * vx + vy * vy + vz * vz) / mu - 1.0 / r
+    radial = (x * vx + y * vy + z * vz) / mu
+    ex, ey, ez = along * x - radial * vx, along * y - radial * vy, along * z - radial * vz
+    f, g = ex * fx + ey * fy + ez * fz, ex * gx + ey * gy + ez * gz
+    w = 1.0 + f * cos + g * sin
+    q = np.sqrt(semi / mu)
+    dp = p[at + 5] * (semi - p[at]) / (p[at + 10] * p[at + 10])
+    df = p[at + 6] * (f - p[at + 1]) / (p[at + 11] * p[at + 11])
+    dg = p[at + 7] * (g - p[at + 2]) / (p[at + 12] * p[at + 12])
+    dh = p[at + 8] * (h - p[at + 3]) / (p[at + 13] * p[at + 13])
+    dk = p[at + 9] * (k - p[at + 4]) / (p[at + 14] * p[at + 14])
+    tilt = (h * sin - k * cos) / w
+    l_r = q * (df * sin - dg * cos)
+    l_t = q * (2.0 * semi / w * dp + ((w + 1.0) * cos + f) / w * df + ((w + 1.0) * sin + g) / w * dg)
+    l_h = q * (tilt * (f * dg - g * df) + 0.5 * s2 / w * (cos * dh + sin * dk))
+    tx, ty, tz = wy * uz - wz * uy, wz * ux - wx * uz, wx * uy - wy * ux
+    l_r, l_t, l_h = -2.0 * l_r, -2.0 * l_t, -2.0 * l_h
+    return l_r * ux + l_t * tx + l_h * wx, l_r * uy + l_t * ty + l_h * wy, l_r * uz + l_t * tz + l_h * wz

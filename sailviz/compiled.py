@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import numba
+from numba.core import sigutils
+from numba.core.ccallback import CFunc
 
 # No reassociation: compensated sums and NaN must mean what they say. Contraction (fused multiply-add) is safe.
 _OPTIONS = {"error_model": "numpy", "fastmath": {"contract", "nsz"}, "nogil": True}
 
 
 _PACKAGE = Path(__file__).parent
-_WITH_COMPILED_CODE = ("compiled.py", "constants.py", "steering.py", "optimal_steering.py", "primers.py", "*/[!_]*.py")
+_WITH_COMPILED_CODE = ("compiled.py", "constants.py", "steering.py", "optimal_steering.py", "*/[!_]*.py")
 _SOURCES = tuple(
     (path.name, path.stat().st_mtime_ns, path.stat().st_size)
     for pattern in _WITH_COMPILED_CODE
@@ -32,10 +35,28 @@ def compiled(function):
         dispatcher = numba.njit(cache=True, **_OPTIONS)(function)
     except RuntimeError:  # "no locator available": nowhere to write
         return numba.njit(**_OPTIONS)(function)
-    file = getattr(dispatcher._cache, "_cache_file", None)
+    _stamp(dispatcher)
+    return dispatcher
+
+
+@cache
+def cached_c_function(function, signature):
+    """A C function (numba.cfunc), its machine code kept on disk under the same rules as that of `compiled`."""
+    options = {key: value for key, value in _OPTIONS.items() if key != "nogil"}
+    made = CFunc(function, sigutils.normalize_signature(signature), {}, options)
+    try:
+        made.enable_caching()
+    except RuntimeError:  # nowhere to write
+        made = CFunc(function, sigutils.normalize_signature(signature), {}, options)
+    _stamp(made)
+    made.compile()
+    return made
+
+
+def _stamp(made):
+    file = getattr(made._cache, "_cache_file", None)
     if hasattr(file, "_source_stamp"):
         file._source_stamp = (file._source_stamp, _SOURCES)
-    return dispatcher
 
 
 def inlined(function):

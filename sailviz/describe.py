@@ -55,8 +55,8 @@ def parameters_in_words(scene, design, strength) -> list[tuple[str, str]]:
     elif start.kind == "spiral":
         rows += [("flight-path angle", angle(float(design.flight_path_angle)))]
     elif start.kind == "circular":
-        where = start.radius if start.radius is not None else start.altitude
-        rows += [("initial radius" if start.radius is not None else "initial altitude", length(where))]
+        sizes = (("radius", start.radius), ("altitude", start.altitude), ("mean altitude", start.mean_altitude))
+        rows += [(f"initial {name}", length(value)) for name, value in sizes if value is not None]
         if start.inclination:
             rows += [("inclination", angle(start.inclination))]
     elif start.kind == "elements":
@@ -68,7 +68,7 @@ def parameters_in_words(scene, design, strength) -> list[tuple[str, str]]:
     if device.kind == "plasma-brake":
         rows += [
             ("tether", length(device.tether_length)),
-            ("voltage", f"−{device.voltage:g} V"),
+            ("voltage", f"{'+' if device.polarity == 'positive' else '−'}{abs(device.voltage):g} V"),
             ("mass", f"{device.mass:g} kg"),
         ]
     if device.kind == "thruster":
@@ -105,8 +105,11 @@ _SI = {
     "area": "m²",
     "voltage": "V",
     "pressure": "Pa",
+    "power": "W",
     "force": "N",
     "force_per_length": "N/m",
+    "mass_density": "kg/m³",
+    "solar_flux": "sfu",
     "number_density": "1/m³",
     "mu": "m³/s²",
     "angular_rate": "rad/s",

@@ -72,3 +72,34 @@ def state(semi_major_axis, eccentricity, inclination, raan, argument, true_anoma
     position = in_plane(r * np.cos(u), r * np.sin(u))
     velocity = in_plane(-speed * (np.sin(u) + e * np.sin(w)), speed * (np.cos(u) + e * np.cos(w)))
     return position, velocity
+
+
+def mean_semi_major_axis(position, velocity, mu, oblateness):
+    """Semi-major axis (...,) m without the swing that an oblate body forces on it within a revolution.
+
+    position m, velocity m/s : (..., 3), mu m3/s2, oblateness = J2 R^2 in m2. First order in J2, some ten metres in low
+    Earth orbit; it is the mean over time of the osculating one. Source: the energy integral in the J2 field; its mean
+    as in D. Brouwer, Astron. J. 64, 378 (1959).
+    """
+    r_vec, v_vec = np.asarray(position, float), np.asarray(velocity, float)
+    r = np.linalg.norm(r_vec, axis=-1)
+    h = np.cross(r_vec, v_vec)
+    h2 = np.sum(h * h, axis=-1)
+    a = 1.0 / (2.0 / r - np.sum(v_vec * v_vec, axis=-1) / mu)
+    sin2_i = 1.0 - h[..., 2] ** 2 / h2
+    now = (a / r) ** 3 * (1.0 - 3.0 * (r_vec[..., 2] / r) ** 2)
+    mean = (1.0 - 1.5 * sin2_i) * (mu * a / h2) ** 1.5
+    return a - oblateness / a * (now - mean)
+
+
+def osculating_radius(mean_radius, inclination, argument_of_latitude, oblateness):
+    """Radius m of the osculating circle whose mean semi-major axis about an oblate body is mean_radius.
+
+    inclination, argument_of_latitude rad; oblateness = J2 R^2 in m2. First order in J2, as `mean_semi_major_axis`.
+    """
+    sin2_i = np.sin(inclination) ** 2
+    swing = 1.5 * sin2_i * (1.0 - 2.0 * np.sin(argument_of_latitude) ** 2)
+    radius = mean_radius
+    for _ in range(4):
+        radius = mean_radius + oblateness / radius * swing
+    return radius

@@ -16,20 +16,23 @@ from sailviz import ephemeris, frames
 from sailviz import steering as law
 from sailviz.constants import (
     AU,
+    DAY,
     J2_EARTH,
     MU_EARTH,
     MU_SUN,
     RADIUS_EARTH,
     RADIUS_SUN,
-    ROTATION_EARTH,
     STANDARD_GRAVITY,
 )
 from sailviz.design import displaced, spirals
 from sailviz.design.holding import Track
-from sailviz.environment import ionosphere, solar_wind
+from sailviz.environment import solar_wind
+from sailviz.environment.sun import sun_parameters
 from sailviz.errors import Fault, SceneError
+from sailviz.plan_low_orbit import brake_device, low_orbit_parts
 from sailviz.propagate import dynamics
 from sailviz.propagate import events as happening
+from sailviz.propagate.plugs import user_address
 from sailviz.propulsion import electric_sail
 from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.run import Body
@@ -77,15 +80,14 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
     keep = []
     user_steering = user_force = 0
     if steering is not None:
-        user_steering, handle = dynamics.user_address(steering, "steering")
+        user_steering, handle = user_address(steering, "steering")
         law_id, law_parameters, table, interpolation = law.USER, (), None, law.LINEAR
         keep.append(handle)
     if force is not None:
-        user_force, handle = dynamics.user_address(force, "force")
+        user_force, handle = user_address(force, "force")
         keep.append(handle)
     breaks, factors, pressure, switches = _schedule(scene, table)
     names, watch = _watched(scene, body)
-    earth = scene.body == "earth"
     model = dynamics.model(
         body.mu,
         device=device,
@@ -94,13 +96,11 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
         steering_parameters=law_parameters,
         interpolation=interpolation,
         table=table,
-        j2_strength=1.5 * J2_EARTH * MU_EARTH * RADIUS_EARTH**2 if scene.environment.j2 else 0.0,
         surface_radius=body.radius,
-        rotation=ROTATION_EARTH if earth and scene.environment.corotation else 0.0,
-        plasma=_plasma(scene, body),
         third_body=third_body(scene),
         user_steering=user_steering,
         user_force=user_force,
+        **low_orbit_parts(scene, body, epoch_of(scene)),
     )
     return Plan(
         scene,
@@ -237,8 +237,7 @@ def _initial_state(scene, body, design):
     if start.kind == "spiral":
         return design.state(start.radius, start.azimuth, body.mu)
     if start.kind == "circular":
-        radius = start.radius if start.radius is not None else body.radius + start.altitude
-        shape = (radius, 0.0, start.inclination, start.raan, 0.0, start.argument_of_latitude)
+        shape = (_circle(start, scene, body), 0.0, start.inclination, _node(scene), 0.0, start.argument_of_latitude)
     else:
         shape = (
             start.semi_major_axis,
@@ -252,6 +251,29 @@ def _initial_state(scene, body, design):
     if not np.isfinite(position).all() or np.linalg.norm(position) <= body.radius:
         raise SceneError([Fault("start", f"this point is not above the surface of the {body.name}.")], scene.source)
     return position, velocity
+
+
+def _circle(start, scene, body) -> float:
+    """Radius, m, of a circular start; for a mean altitude the one whose mean semi-major axis lies there."""
+    if start.radius is not None:
+        return start.radius
+    if start.mean_altitude is None:
+        return body.radius + start.altitude
+    return orbital.osculating_radius(
+        body.radius + start.mean_altitude,
+        start.inclination,
+        start.argument_of_latitude,
+        J2_EARTH * RADIUS_EARTH**2 if scene.environment.j2 else 0.0,
+    )
+
+
+def _node(scene) -> float:
+    """Right ascension of the ascending node, rad, from itself or from the local time of passing it."""
+    start = scene.start
+    if start.ltan is None:
+        return start.raan or 0.0
+    sun = sun_parameters(epoch_of(scene), scene.environment.sun_right_ascension or 0.0)
+    return float(np.remainder(sun[0] + 2 * np.pi * (start.ltan / DAY - 0.5), 2 * np.pi))
 
 
 def sail_strength(scene, design) -> float:
@@ -288,7 +310,7 @@ def _device(scene, design):
         model = electric_sail.MODELS[device.model]
         return dynamics.ELECTRIC_SAIL, (sail_strength(scene, design), model, device.pitch_limit)
     if device.kind == "plasma-brake":
-        return dynamics.PLASMA_BRAKE, (device.tether_length, device.voltage, device.wire_radius)
+        return dynamics.PLASMA_BRAKE, brake_device(scene)
     if device.kind == "thruster":
         size = device.thrust if device.thrust is not None else device.acceleration
         exhaust = device.specific_impulse
@@ -326,21 +348,6 @@ def third_body(scene):
     if third is None:
         return ()
     return third.mu, third.radius, np.sqrt(MU_SUN / third.radius**3), third.azimuth
-
-
-def _plasma(scene, body):
-    profile = scene.environment.ionosphere
-    if profile is None:
-        return ()
-    value = profile.force_per_length if profile.kind == "exponential-force" else profile.density
-    return (
-        ionosphere.PROFILES[profile.kind],
-        profile.reference_altitude,
-        value,
-        profile.scale_height,
-        getattr(profile, "ion_mass", 0.0),
-        body.radius,
-    )
 
 
 def _schedule(scene, table):

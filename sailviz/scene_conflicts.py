@@ -5,11 +5,14 @@ from __future__ import annotations
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
+from sailviz.constants import RADIUS_EARTH
 from sailviz.scene_faults import nearest
 from sailviz.scene_sections import HELD_STARTS
 
 if TYPE_CHECKING:
     from sailviz.scene import Scene
+
+LONGEST = 2**63 / 1e9  # s, what 64 bits of nanoseconds reach
 
 
 def conflicts(scene: Scene) -> list[tuple[str, str]]:
@@ -21,13 +24,6 @@ def conflicts(scene: Scene) -> list[tuple[str, str]]:
     duration = scene.propagation.duration
     if sail and scene.body != "sun":
         found.append(("device.kind", f"a {device.kind} needs the Sun as its central body"))
-    if device.kind == "plasma-brake":
-        if scene.body != "earth":
-            found.append(("device.kind", 'a plasma brake works in the ionosphere: body = "earth"'))
-        if scene.environment.ionosphere is None:
-            found.append(("environment.ionosphere", "a plasma brake needs an ionosphere"))
-        if law not in (None, "vertical"):
-            found.append(("steering.kind", 'a plasma-brake tether hangs along the gravity gradient: "vertical"'))
     if device.kind == "thruster" and law in (None, "sun-facing", "vertical", "as designed"):
         words = '"radial", "circumferential", "tangential", "inertial", "orbital", "meridian" or "table"'
         found.append(("steering.kind", f"a thruster needs a direction: {words}"))
@@ -74,8 +70,15 @@ def conflicts(scene: Scene) -> list[tuple[str, str]]:
         found.append(("environment.solar_wind.redraw", "more than ten million draws in one run"))
     if scene.epoch is not None and not 1700 <= scene.epoch.year <= 2262 - duration / 3.15576e7:
         found.append(("epoch", "the run must lie between the years 1700 and 2262, what 64 bits of nanoseconds reach"))
-    if scene.environment.j2 and scene.body != "earth":
-        found.append(("environment.j2", 'j2 is known for body = "earth"'))
+    found += _around_the_earth(scene)
+    if duration > LONGEST:
+        words = (
+            "a recording's clock reaches 292 years of nanoseconds; lifetimes beyond are sailviz.design.decay's business"
+        )
+        found.append(("propagation.duration", words))
+    for i, window in enumerate(scene.propagation.dense):
+        if window.end > duration:
+            found.append((f"propagation.dense[{i}].end", "the window reaches beyond the run"))
     if sail and law in ("orbital", "meridian", "table"):
         angles = steering.pitch if isinstance(steering.pitch, list) else [steering.pitch]
         limited = device.kind == "electric-sail" and device.model in ("original", "updated")
@@ -84,7 +87,7 @@ def conflicts(scene: Scene) -> list[tuple[str, str]]:
             degrees = limit * 57.29577951308232
             found.append(("steering.pitch", f"beyond {degrees:.4g} deg the {device.kind}'s force model does not hold"))
     for i, watched in enumerate(scene.event):
-        if watched.kind == "altitude" and _body_radius(scene) == 0:
+        if watched.kind in ("altitude", "mean-altitude") and _body_radius(scene) == 0:
             found.append((f"event[{i}].altitude", "the body has no radius to measure an altitude from"))
     names = {w.name or w.kind for w in scene.event} | {"impact", "thrust on", "thrust off", "brake off"}
     for i, expected in enumerate(scene.expect):
@@ -94,6 +97,92 @@ def conflicts(scene: Scene) -> list[tuple[str, str]]:
         if expected.at_time is not None and not 0 <= expected.at_time <= duration:
             found.append((f"expect[{i}].at_time", "outside the run"))
     return found
+
+
+def _around_the_earth(scene: Scene) -> list[tuple[str, str]]:
+    """What concerns the plasma, the air and the shadow of the Earth."""
+    found = []
+    device, around, start = scene.device, scene.environment, scene.start
+    law = scene.steering.kind if scene.steering else None
+    brake, table = device.kind == "plasma-brake", getattr(around.ionosphere, "kind", None) == "iri-2020"
+    if scene.body != "earth":
+        for name in ("j2", "j3", "j4", "atmosphere", "solar_flux"):
+            if getattr(around, name):
+                found.append((f"environment.{name}", f'{name} is known for body = "earth"'))
+        if brake:
+            found.append(("device.kind", 'a plasma brake works in the ionosphere: body = "earth"'))
+    if (around.j3 or around.j4) and not around.j2:
+        found.append(("environment.j2", "j3 and j4 are corrections to j2: turn it on"))
+    if brake and around.ionosphere is None:
+        found.append(("environment.ionosphere", "a plasma brake needs an ionosphere"))
+    hangs = ("vertical", "gravity-gradient", "spinning")
+    if brake and law not in (None, *hangs):
+        words = '"vertical", "gravity-gradient" or "spinning"'
+        found.append(("steering.kind", f"a plasma-brake tether hangs along the gravity gradient or spins: {words}"))
+    if not brake and law in hangs[1:]:
+        found.append(("steering.kind", f'"{law}" is for a plasma-brake tether'))
+    if law == "gravity-gradient" and brake and device.tip_mass is None:
+        found.append(("device.tip_mass", "how far the drag tilts the tether depends on the mass at its tip"))
+    if law == "spinning" and brake and getattr(around.ionosphere, "kind", None) == "exponential-force":
+        found.append(("environment.ionosphere", "a spinning tether needs a density, from which its mean force is made"))
+    needs_density = [name for name in ("power", "eclipse_power") if getattr(device, name, None) is not None]
+    needs_density += ["polarity"] if getattr(device, "polarity", "negative") == "positive" else []
+    if getattr(around.ionosphere, "kind", None) == "exponential-force":
+        for name in needs_density:
+            found.append((f"device.{name}", "needs an ionosphere with a density, not a given force"))
+    if around.atmosphere is not None and (device.drag_area is None or device.mass is None):
+        found.append(("device.drag_area", "an atmosphere needs the area and the mass that it brakes"))
+    if device.drag_area is not None and around.atmosphere is None:
+        found.append(("environment.atmosphere", "drag_area without an atmosphere does nothing"))
+    air_table = getattr(around.atmosphere, "kind", None) == "nrlmsis-2.1"
+    if (table or air_table) and around.solar_flux is None:
+        found.append(
+            (
+                "environment.solar_flux",
+                'tables need the sun\'s level: solar_flux_sfu = 70 ... 193 or solar_flux = "cycle"',
+            )
+        )
+    if isinstance(around.solar_flux, float):
+        low, high = (70.0, 193.0) if table else (60.0, 300.0)
+        if (table or air_table) and not low <= around.solar_flux <= high:
+            words = "the ionosphere table reaches" if table else "the atmosphere model is meant"
+            found.append(("environment.solar_flux", f"{words} from {low:g} to {high:g} sfu"))
+    if around.solar_flux is not None and not (table or air_table):
+        found.append(("environment.solar_flux", "nothing in this scene depends on it"))
+    if around.solar_flux == "cycle" and scene.epoch is None:
+        found.append(("epoch", "where the solar cycle stands needs a date"))
+    if around.sun_right_ascension is not None and scene.epoch is not None:
+        found.append(("environment.sun_right_ascension", "the epoch says where the Sun is"))
+    if getattr(start, "mean_altitude", None) is not None and scene.body != "earth":
+        found.append(("start.mean_altitude", 'is known for body = "earth"; elsewhere give altitude'))
+    if getattr(start, "ltan", None) is not None and scene.body != "earth":
+        found.append(("start.ltan", "local time is counted round the Earth"))
+    low, high = _altitudes(scene)
+    if brake and low is not None:
+        room = low - device.off_below
+        if device.tether_length >= room > 0:
+            found.append(
+                (
+                    "device.tether_length",
+                    f"longer than the {room / 1e3:.4g} km between the orbit and where the brake goes off",
+                )
+            )
+        if table and high > 1500e3 and around.ionosphere.above_table == "refuse":
+            words = f'the orbit reaches {high / 1e3:.5g} km, the table 1500: above_table = "hold" keeps its last value'
+            found.append(("environment.ionosphere.above_table", words))
+    return found
+
+
+def _altitudes(scene: Scene) -> tuple[float | None, float | None]:
+    """Lowest and highest altitude of the first revolution over the Earth's equatorial radius, m; None if unknown."""
+    start = scene.start
+    if scene.body != "earth" or start.kind not in ("circular", "elements"):
+        return None, None
+    if start.kind == "elements":
+        a, e = start.semi_major_axis, start.eccentricity
+        return a * (1 - e) - RADIUS_EARTH, (a * (1 + e) if e < 1 else float("inf")) - RADIUS_EARTH
+    altitude = start.radius - RADIUS_EARTH if start.radius is not None else start.altitude or start.mean_altitude
+    return altitude, altitude
 
 
 def _beyond_first_order(scene: Scene) -> list[str]:

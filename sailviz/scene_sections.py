@@ -25,6 +25,9 @@ Pressure = Annotated[float, Dimension("pressure")]
 Force = Annotated[float, Dimension("force")]
 ForcePerLength = Annotated[float, Dimension("force_per_length")]
 NumberDensity = Annotated[float, Dimension("number_density")]
+Power = Annotated[float, Dimension("power")]
+MassDensity = Annotated[float, Dimension("mass_density")]
+SolarFlux = Annotated[float, Dimension("solar_flux")]
 IonMass = Annotated[float, Dimension("ion_mass")]
 Mu = Annotated[float, Dimension("mu")]
 Three = Field(min_length=3, max_length=3)
@@ -94,18 +97,23 @@ class ElementsStart(Section):
 
 
 class CircularStart(Section):
-    """A circular Keplerian orbit."""
+    """A circular Keplerian orbit. Its size is osculating, or with mean_altitude the mean over an orbit about an oblate
+    body; its node is given as raan or as the local time at which it is passed going north."""
 
     kind: Literal["circular"]
     radius: Annotated[Length, POSITIVE] | None = None
     altitude: Annotated[Length, POSITIVE] | None = None
+    mean_altitude: Annotated[Length, POSITIVE] | None = None
     inclination: Annotated[Angle, Field(ge=0, le=3.141592653589794)] = 0.0
-    raan: Angle = 0.0
+    raan: Angle | None = None
+    ltan: Annotated[Time, Field(ge=0, lt=86400)] | None = None
     argument_of_latitude: Angle = 0.0
 
     @model_validator(mode="after")
     def _size(self):
-        _one_of(self, "radius", "altitude")
+        _one_of(self, "radius", "altitude", "mean_altitude")
+        if self.raan is not None and self.ltan is not None:
+            raise _wrong("needs raan or ltan, the local time of the ascending node, has both")
         return self
 
 
@@ -230,6 +238,8 @@ class Device(Section):
 
     mass: Annotated[Mass, POSITIVE] | None = None
     active: Intervals | None = None
+    drag_area: Annotated[Area, POSITIVE] | None = None
+    drag_coefficient: Annotated[float, POSITIVE] = 2.2
 
     @model_validator(mode="after")
     def _ordered(self):
@@ -276,14 +286,33 @@ class ElectricSail(Device):
 
 
 class PlasmaBrake(Device):
-    """A negatively charged tether hanging below a satellite."""
+    """A charged tether hanging below a satellite. voltage is taken by its size, and its sign, if any, must agree with
+    the polarity; wire_radius is the effective electric radius, wire_diameter the sum over the wires."""
 
     kind: Literal["plasma-brake"]
     mass: Annotated[Mass, POSITIVE]
     tether_length: Annotated[Length, POSITIVE]
-    voltage: Annotated[Voltage, POSITIVE] = 1_000.0
+    voltage: Voltage = 1_000.0
+    polarity: Literal["negative", "positive"] = "negative"
     wire_radius: Annotated[Thickness, POSITIVE] = 1e-3
+    wire_diameter: Annotated[Thickness, POSITIVE] = 50e-6
+    efficiency: Annotated[float, Field(gt=0, le=1)] = 1.0
+    power: Annotated[Power, POSITIVE] | None = None
+    eclipse: Literal["on", "off", "limited"] = "on"
+    eclipse_power: Annotated[Power, POSITIVE] | None = None
+    tether_mass: Annotated[Mass, POSITIVE] | None = None
+    tip_mass: Annotated[Mass, POSITIVE] | None = None
     off_below: Annotated[Length, Field(ge=0)] = 200e3
+
+    @model_validator(mode="after")
+    def _agrees(self):
+        if self.voltage == 0:
+            raise _wrong("voltage 0 makes no brake: give the size of the voltage")
+        if self.voltage < 0 and self.polarity == "positive":
+            raise _wrong('voltage is negative and polarity "positive": give one sign only')
+        if (self.eclipse == "limited") != (self.eclipse_power is not None):
+            raise _wrong('eclipse = "limited" and eclipse_power, what is left in the shadow, belong together')
+        return self
 
 
 class Thruster(Device):
@@ -313,7 +342,17 @@ Devices = Annotated[SolarSail | ElectricSail | PlasmaBrake | Thruster | NoDevice
 class PlainSteering(Section):
     """A law without parameters."""
 
-    kind: Literal["sun-facing", "radial", "circumferential", "tangential", "vertical", "as designed"]
+    kind: Literal[
+        "sun-facing", "radial", "circumferential", "tangential", "vertical", "gravity-gradient", "as designed"
+    ]
+
+
+class SpinningSteering(Section):
+    """A tether that spins, its force averaged over a turn: about the horizontal across the track, so that it lies in
+    the plane of motion, or about the velocity."""
+
+    kind: Literal["spinning"]
+    plane: Literal["along-track", "across-track"]
 
 
 class FrameSteering(Section):
@@ -357,7 +396,9 @@ class TableSteering(Section):
         return self
 
 
-Steering = Annotated[PlainSteering | FrameSteering | InertialSteering | TableSteering, Field(discriminator="kind")]
+Steering = Annotated[
+    PlainSteering | FrameSteering | InertialSteering | TableSteering | SpinningSteering, Field(discriminator="kind")
+]
 
 
 # ---------------------------------------------------------------- what surrounds it
@@ -397,6 +438,31 @@ class DensityProfile(Section):
     ion_mass: Annotated[IonMass, POSITIVE] = 15.999 * 1.66053906660e-27
 
 
+class IonosphereTable(Section):
+    """The plasma of IRI-2020 over latitude, local time, altitude and solar flux. density_factor: how far the truth may
+    be off, 0.5 to 2 for the whole model."""
+
+    kind: Literal["iri-2020"]
+    density_factor: Annotated[float, POSITIVE] = 1.0
+    above_table: Literal["refuse", "hold"] = "refuse"
+
+
+class ExponentialAtmosphere(Section):
+    """Neutral density, exponential in altitude."""
+
+    kind: Literal["exponential"]
+    density: Annotated[MassDensity, POSITIVE]
+    reference_altitude: Annotated[Length, POSITIVE] = 700e3
+    scale_height: Annotated[Length, POSITIVE]
+
+
+class MsisAtmosphere(Section):
+    """Neutral density of NRLMSIS 2.1, tabulated for the solar flux and the geomagnetic index ap of the scene."""
+
+    kind: Literal["nrlmsis-2.1"]
+    ap: Annotated[float, Field(ge=0, le=400)] = 10.0
+
+
 class ThirdBody(Section):
     """A planet on a circular orbit in the ecliptic, whose gravity acts on the craft."""
 
@@ -410,19 +476,43 @@ class Environment(Section):
     """Everything around the craft but the point mass it orbits."""
 
     solar_wind: Annotated[SteadyWind | GammaWind, Field(discriminator="kind")] = SteadyWind(kind="steady")
-    ionosphere: Annotated[ForceProfile | DensityProfile, Field(discriminator="kind")] | None = None
+    ionosphere: Annotated[ForceProfile | DensityProfile | IonosphereTable, Field(discriminator="kind")] | None = None
+    atmosphere: Annotated[ExponentialAtmosphere | MsisAtmosphere, Field(discriminator="kind")] | None = None
+    solar_flux: Annotated[SolarFlux, POSITIVE] | Literal["cycle"] | None = None
+    sun_right_ascension: Angle | None = None
+    shadow: Literal["cylinder", "cone"] = "cylinder"
+    magnetic_sensitivity: Annotated[float, Field(ge=0, le=1)] = 0.0
     third_body: ThirdBody | None = None
     j2: bool = False
+    j3: bool = False
+    j4: bool = False
     corotation: bool = False
+    height_above: Literal["sphere", "ellipsoid"] = "sphere"
 
 
 # ---------------------------------------------------------------- how it is computed, watched, recorded, judged
+class DenseOutput(Section):
+    """A window of the run in which rows come closer."""
+
+    start: Annotated[Time, Field(ge=0)]
+    end: Annotated[Time, POSITIVE]
+    output_interval: Annotated[Time, POSITIVE]
+
+    @model_validator(mode="after")
+    def _window(self):
+        if self.end - self.start < self.output_interval:
+            raise _wrong("the window from start to end is shorter than its output_interval")
+        return self
+
+
 class Propagation(Section):
-    """Duration, output grid and accuracy."""
+    """Duration, output grid, integrator and accuracy."""
 
     duration: Annotated[Time, POSITIVE]
     outputs: Annotated[int, Field(ge=2, le=100_000_000)] | None = None
     output_interval: Annotated[Time, POSITIVE] | None = None
+    dense: list[DenseOutput] = []
+    integrator: Literal["auto", "dop853", "gauss-jackson"] = "auto"
     tolerance: Annotated[float, Field(ge=1e-15, le=1e-3)] = 1e-10
     largest_step: Annotated[Time, POSITIVE] | None = None
 
@@ -438,7 +528,7 @@ class Propagation(Section):
 class Watched(Section):
     """An event to find. `stop` ends the run there."""
 
-    kind: Literal["radius", "altitude", "periapsis", "apoapsis", "node", "escape"]
+    kind: Literal["radius", "altitude", "mean-altitude", "periapsis", "apoapsis", "node", "escape"]
     name: str | None = None
     radius: Annotated[Length, POSITIVE] | None = None
     altitude: Annotated[Length, POSITIVE] | None = None
@@ -448,9 +538,10 @@ class Watched(Section):
     @model_validator(mode="after")
     def _level(self):
         for field in ("radius", "altitude"):
-            if (self.kind == field) != (getattr(self, field) is not None):
-                needs = f'kind = "{field}" needs {field}'
-                raise _wrong(needs if self.kind == field else f'{field} belongs to kind = "{field}" and to no other')
+            of_it = (field, "mean-altitude") if field == "altitude" else (field,)
+            if (self.kind in of_it) != (getattr(self, field) is not None):
+                needs = f'kind = "{self.kind}" needs {field}'
+                raise _wrong(needs if self.kind in of_it else f'{field} belongs to kind = "{field}" and to no other')
         return self
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from sailviz import elements as orbital
 from sailviz import frames
 from sailviz.errors import PropagationError
+from sailviz.observation import observe
 from sailviz.plan import Plan, plan
 from sailviz.propagate import dop853, dynamics
 from sailviz.run import Attitude, Event, Run, Thrust, join
@@ -24,7 +25,7 @@ def simulate(scene: Scene, *, steering=None, force=None) -> Run:
     """Propagate a scene and return the whole Run.
 
     steering : own attitude law, force : own additional acceleration in m/s2; each a numba.cfunc of
-    sailviz.propagate.dynamics.USER_SIGNATURE or an @njit function (t, x, y, z, vx, vy, vz, m) -> three floats, SI,
+    sailviz.propagate.plugs.USER_SIGNATURE or an @njit function (t, x, y, z, vx, vy, vz, m) -> three floats, SI,
     inertial. Raises SceneError if the scene asks for something infeasible, PropagationError if the integration
     breaks down.
     """
@@ -47,30 +48,50 @@ def simulate_blocks(
     return _blocks(plan(scene, steering, force), block_rows, progress or (lambda fraction: None))
 
 
-def _grid(scene) -> tuple[int, float]:
-    """(rows, spacing s); the last row is the end of the run, or one spacing before it."""
-    run = scene.propagation
+def _grid(run) -> tuple[int, float]:
+    """(rows, spacing s) of even output; the last row is the end of the run, or one spacing before it."""
     if run.output_interval is not None:
         return int(np.floor(run.duration / run.output_interval * (1 + 1e-12))) + 1, run.output_interval
     rows = run.outputs or DEFAULT_OUTPUTS
     return rows, run.duration / (rows - 1)
 
 
+class OutputTimes:
+    """Times of all rows of a run, s: even, or closer in some windows. Even ones are computed as they are asked for."""
+
+    def __init__(self, run):
+        self.rows, self.spacing = _grid(run)
+        self.run, self.uneven = run, None
+        if run.dense:
+            even = self.between(0, self.rows)
+            windows = [np.arange(w.start, w.end + 0.5 * w.output_interval, w.output_interval) for w in run.dense]
+            self.uneven = np.unique(np.minimum(np.concatenate([even, *windows]), run.duration))
+            self.rows = len(self.uneven)
+
+    def between(self, first, count):
+        """The times of count rows from a first one on."""
+        if self.uneven is not None:
+            return self.uneven[first : first + count]
+        times = np.minimum(self.spacing * np.arange(first, first + count), self.run.duration)
+        if first + count == self.rows and self.run.output_interval is None:
+            times[-1] = self.run.duration
+        return times
+
+
 def _blocks(p: Plan, block_rows, progress):
     run = p.scene.propagation
-    rows, spacing = _grid(p.scene)
+    output = OutputTimes(run)
+    rows = output.rows
     state = dop853.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
     setting = None
     off_time = np.inf
     switches = list(p.switches)
     for first in range(0, rows, block_rows):
         count = min(block_rows, rows - first)
-        times = np.minimum(spacing * np.arange(first, first + count), run.duration)
-        if first + count == rows and run.output_interval is None:
-            times[-1] = run.duration
+        times = output.between(first, count)
         due = [switch for switch in switches if switch[0] <= times[-1]]
         del switches[: len(due)]
-        columns, found, status = _fill(p, state, times, due, progress)
+        columns, found, status = _fill(p, state, times, due, rows, progress)
         if not dop853.in_use(state):
             off_time = min([off_time] + [event.time for event in found if event.name == "brake off"])
         last = status != dop853.DONE or first + count == rows
@@ -105,13 +126,13 @@ def _blocks(p: Plan, block_rows, progress):
             return
 
 
-def _fill(p: Plan, state, times, switches, progress):
+def _fill(p: Plan, state, times, switches, output_rows, progress):
     """((times (n,), states (7, n)), events, status) of one block. Switching times are computed along with the rows."""
     run = p.scene.propagation
     moments = np.unique(np.concatenate([times, [time for time, _ in switches]])) if switches else times
     components = 7 if p.model.device == dynamics.THRUSTER else 6
     out = np.empty((components, len(moments)))
-    piece = max(1, min(len(moments), _grid(p.scene)[0] // 50))  # often enough to show progress and to hear Ctrl-C
+    piece = max(1, min(len(moments), output_rows // 50))  # often enough to show progress and to hear Ctrl-C
     found, status, filled = [], dop853.DONE, 0
     for first in range(0, len(moments), piece):
         part = moments[first : first + piece]
@@ -157,20 +178,19 @@ def _observed(p: Plan, time, states, first, off_time) -> Run:
     interval = np.searchsorted(p.breaks, time, side="right") - 1
     factor = np.where(time < off_time, p.factors[interval], 0.0)
     states = np.ascontiguousarray(states)
-    normal, acceleration, per_length = dynamics.observe(time, states, factor, p.model)
+    normal, acceleration, throttle, columns = observe(p, time, states, factor)
     position, velocity = states[:3].T.copy(), states[3:6].T.copy()
     axes = frames.rtn(position, velocity)
     pitch, cone, clock = frames.pitch_cone_clock(axes, normal, acceleration)
     attitude = Attitude(pitch, cone, clock, normal, frames.quaternion(frames.body_axes(normal, axes[..., 1])))
-    on = (factor != 0) & (p.model.device != dynamics.NO_DEVICE)
+    on = (factor * throttle != 0) & (p.model.device != dynamics.NO_DEVICE)
     thrust = Thrust(acceleration, frames.to_frame(axes, acceleration), np.linalg.norm(acceleration, axis=1), on)
     environment = {}
     if len(p.breaks) > 1 or p.scene.device.active is not None:
         environment["thrust_factor"] = factor
     if p.pressure is not None:
         environment["solar_wind_pressure_Pa"] = p.pressure[interval]
-    if p.model.device == dynamics.PLASMA_BRAKE:
-        environment["plasma_force_N_m"] = per_length
+    environment |= columns
     return Run(
         None,
         first,

@@ -13,6 +13,7 @@ from sailviz.compiled import inlined
 from sailviz.optimal_steering import analytic_pitch, optimal_pitch  # noqa: F401  part of this module's face
 
 RADIAL, ORBITAL, MERIDIAN, TRANSVERSE, TANGENTIAL, INERTIAL, TABLE_ORBITAL, TABLE_MERIDIAN, USER = range(9)
+PRIMER, LOCAL, LYAPUNOV = range(9, 12)  # towards the most thrust along a primer: from a table, for an element, for all
 
 # name in a scene -> id; "radial" and "sun-facing" are one law under the words of two trades
 LAWS = {

@@ -19,9 +19,12 @@ UNITS: dict[str, dict[str, float]] = {
     "area": {"m2": 1.0, "km2": 1e6},
     "voltage": {"V": 1.0, "kV": 1e3},
     "pressure": {"Pa": 1.0, "nPa": 1e-9},
+    "power": {"W": 1.0, "mW": 1e-3, "kW": 1e3},
     "force": {"N": 1.0, "mN": 1e-3, "uN": 1e-6},
     "force_per_length": {"N_m": 1.0, "nN_m": 1e-9, "mN_km": 1e-6},
     "number_density": {"per_m3": 1.0, "per_cm3": 1e6},
+    "mass_density": {"kg_m3": 1.0, "g_cm3": 1e3},
+    "solar_flux": {"sfu": 1.0},  # 1e-22 W/m2/Hz at 10.7 cm; the models of the upper atmosphere count in it
     "mu": {"m3_s2": 1.0, "km3_s2": 1e9},
     "specific_energy": {"J_kg": 1.0, "MJ_kg": 1e6, "km2_s2": 1e6},
     "specific_angular_momentum": {"m2_s": 1.0, "km2_s": 1e6},

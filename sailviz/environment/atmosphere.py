@@ -76,6 +76,15 @@ def lookup(p, at, latitude, local_time, altitude, f107):
     return np.exp(quantity(p, cell(p, at, latitude, local_time, altitude, f107, 1), 0, 1))
 
 
+@inlined
+def air_drag(x, y, z, vx, vy, vz, rotation, k):
+    """Acceleration, m/s2, by drag against the velocity through air that turns with the body at `rotation`, rad/s about
+    +z; k = density Cd A / mass, 1/m."""
+    qx, qy, qz = vx + rotation * y, vy - rotation * x, vz
+    k = -0.5 * k * np.sqrt(qx * qx + qy * qy + qz * qz)
+    return k * qx, k * qy, k * qz
+
+
 @compiled
 def _lookups(p, where, result):
     for i in range(where.shape[1]):

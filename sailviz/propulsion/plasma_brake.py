@@ -119,6 +119,16 @@ def current(
     return collected * (1 + secondary_yield) + photoemission * wire_diameter * length
 
 
+@inlined
+def tether_current(density, ion_mass, speed, voltage, length, wire_diameter, positive):
+    """`current` for scalars inside the propagator, without secondary and photoelectrons; positive is 0 for a negative
+    tether."""
+    rate = 2 * ELEMENTARY_CHARGE * voltage / ion_mass + speed * speed
+    if positive != 0.0:
+        rate = 2 * ELEMENTARY_CHARGE * voltage / MASS_ELECTRON
+    return ELEMENTARY_CHARGE * density * wire_diameter * length * np.sqrt(rate)
+
+
 def power(
     density,
     ion_mass,

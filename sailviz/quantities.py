@@ -39,6 +39,16 @@ def _closed_form_error(run: Run):
     raise TypeError("the error against a closed form takes the closed form too: expectations.py knows it")
 
 
+def _above_surface(distance):
+    """Of a length from the centre as a function of the elements, its height over the central body's radius."""
+    return lambda run: distance(run.elements) - run.setting.body.radius
+
+
+def _acted(name: str):
+    """A column of the environment; NaN, which no expectation accepts, where the run has none."""
+    return lambda run: np.asarray(run.environment.get(name, np.full(len(run), np.nan)), float)
+
+
 # name -> (dimension, values of a run)
 QUANTITIES = {
     "time": ("time", lambda run: run.time),
@@ -68,6 +78,19 @@ QUANTITIES = {
     "clock": ("angle", lambda run: run.attitude.clock),
     "thrust_acceleration": ("acceleration", lambda run: run.thrust.magnitude),
     "closed_form_error": ("none", _closed_form_error),
+    "perigee_altitude": ("length", _above_surface(lambda e: e.semi_major_axis * (1 - e.eccentricity))),
+    "mean_altitude": ("length", _above_surface(lambda e: e.semi_major_axis)),
+    "apogee_altitude": ("length", _above_surface(lambda e: e.semi_major_axis * (1 + e.eccentricity))),
+    "quasi_circular_altitude": ("length", _acted("quasi_circular_altitude_m")),
+    "sunlit": ("none", _acted("sunlit")),  # its mean is the share of the time
+    "force_law_valid": ("none", _acted("force_law_valid")),
+    "plasma_force": ("force_per_length", _acted("plasma_force_N_m")),
+    "plasma_density": ("number_density", _acted("plasma_density_per_m3")),
+    "tether_current": ("current", _acted("tether_current_A")),
+    "tether_voltage": ("voltage", _acted("tether_voltage_V")),
+    "tether_power": ("power", _acted("tether_power_W")),
+    "tether_tilt": ("angle", _acted("tether_tilt_rad")),
+    "air_drag": ("force", _acted("air_drag_N")),
     "thrust_factor": ("none", lambda run: run.environment.get("thrust_factor", np.ones(len(run)))),
 }
 

@@ -42,6 +42,23 @@ class Reference:
 
 
 @dataclass(frozen=True)
+class Shell:
+    """A polar map of something round the central body, in the plane of the orbit at the start, e.g. plasma density.
+
+    normal, reference (3,) inertial unit vectors: of the plane, and in it where the angle is 0; angle (m,) rad about the
+    normal, altitude (k,) m, both increasing, value (m, k). Drawn as a band that turns with the plane and with the Sun.
+    """
+
+    name: str
+    unit: str  # of the value, as a label writes it, e.g. "1/m³"
+    normal: np.ndarray
+    reference: np.ndarray
+    angle: np.ndarray
+    altitude: np.ndarray
+    value: np.ndarray
+
+
+@dataclass(frozen=True)
 class Setting:
     """Everything about a run that is not a column of numbers."""
 
@@ -63,6 +80,7 @@ class Setting:
     accuracy: str  # one sentence on how the numbers were made
     identity: str  # hash of the resolved scene, hexadecimal
     play_duration: float = 40.0  # s of wall time that a replay takes
+    shells: tuple[Shell, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -111,7 +129,7 @@ class Run:
     attitude: Attitude
     thrust: Thrust
     elements: Elements
-    environment: dict[str, np.ndarray]  # name with unit -> (n,), e.g. "thrust_factor", "plasma_force_N_m"
+    environment: dict[str, np.ndarray]  # name with unit -> (n,) or (n, 3), e.g. "thrust_factor", "plasma_force_N_m"
     bodies: dict[str, np.ndarray]  # name -> (n, 3) m from the central body, e.g. "Earth", or "Sun" seen from the Earth
     approximations: dict[str, np.ndarray] = field(default_factory=dict)  # name -> (n, 3) m, another answer to the same
     events: tuple[Event, ...] = ()

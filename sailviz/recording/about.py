@@ -5,10 +5,13 @@ from __future__ import annotations
 from sailviz.run import Event, Setting
 
 
-def about(setting: Setting) -> str:
-    """Markdown. No heading: height is scarce; parameters run on in a line: a narrow panel would cut a table off."""
+def about(setting: Setting, notes=()) -> str:
+    """Markdown. No heading: height is scarce; parameters run on in a line: a narrow panel would cut a table off.
+
+    notes : what colours mean, one line each
+    """
     lines = [f"**{setting.title}**", "", setting.about.strip(), ""]
-    lines += [f"- {hint.strip()}" for hint in setting.look_for]
+    lines += [f"- {hint.strip()}" for hint in (*setting.look_for, *notes)]
     facts = [f"{name} **{value}**" for name, value in setting.parameters]
     if setting.thesis:
         facts.append(f"thesis, section **{setting.thesis}**")

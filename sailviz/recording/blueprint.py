@@ -7,7 +7,7 @@ import rerun.blueprint as rrb
 from rerun.blueprint.archetypes import PlotBackground, TextLogColumns
 from rerun.blueprint.encodings import TextLogColumn, TextLogColumnKind, TimelineColumn
 
-from sailviz.recording.layout import Camera, Layout
+from sailviz.recording.layout import DESCENT, Camera, Layout
 from sailviz.recording.look import BACKGROUND
 from sailviz.recording.slots import PlotView
 
@@ -66,7 +66,11 @@ def event_columns(layout: Layout) -> TextLogColumns:
 
 
 def space_view(layout: Layout, camera: Camera) -> rrb.Spatial3DView:
-    contents = ["+ /world/**", *(f"- {path}/**" for path in layout.hidden)]
+    contents = ["+ /world/**", "- /world/plane/**", "+ /world/plane/shells/**"]
+    contents += [f"- {path}/**" for path in layout.hidden]
+    if camera.name == DESCENT:
+        contents = [f"+ /world/{name}/**" for name in ("stars", "plane", "center", "night")]
+        contents += ["- /world/night/umbra", "- /world/night/sunlight/**"]
     if camera.name == "Follow":
         contents += ["- /world/names/**", "- /world/night/umbra"]  # labels show through; the umbra's wall would be near
     return rrb.Spatial3DView(
@@ -103,6 +107,8 @@ def trail_ranges(layout: Layout) -> dict:
         "/world/trail/past": time_range(layout, -layout.past if layout.past else None, -layout.tail),
         "/world/trail/recent": time_range(layout, -layout.tail, 0.0),
         "/world/ladder": time_range(layout, None, None),
+        "/world/plane/ladder": time_range(layout, None, None),
+        "/world/plane/rungs": time_range(layout, None, None),
     }
     if layout.future:
         ranges["/world/trail/future"] = time_range(layout, 0.0, None)

@@ -1,8 +1,7 @@
 """The close-up: the craft in the orbital frame, with what acts on it and its angles. Units: a sail is 14 to 16 across.
 
-/sail has x from the central body, y transverse, z along the orbit normal; for a hanging tether x is transverse, y
-normal and z up, so that the planet is below. Arrows of thrust are as long as the root of the thrust, so that weak ones
-are still seen.
+/sail has x from the central body, y transverse, z along the orbit normal. Arrows of thrust are as long as the root of
+the thrust, so that weak ones are still seen.
 """
 
 from __future__ import annotations
@@ -10,33 +9,22 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from sailviz.frames import body_axes, quaternion, to_frame, unit
+from sailviz.frames import body_axes, quaternion, unit
 from sailviz.recording import craft, look
 from sailviz.recording.layout import Layout
 from sailviz.recording.look import points
 from sailviz.recording.pen import Pen, f4
 from sailviz.recording.samples import Samples
-from sailviz.recording.world import draw_air, draw_planet, draw_stars
+from sailviz.recording.world import draw_stars
 from sailviz.run import Run
 
 SIZE = {"solar-sail": 15.0, "electric-sail": 9.0, "thruster": 8.0, "none": 1.0}
 NORMAL_LENGTH = {"solar-sail": 13.0, "electric-sail": 10.0, "thruster": 10.0}
 VELOCITY_LENGTH = 11.0
+PRIMER_LENGTH = 9.0
 PITCH_RADIUS = 6.0
 CONE_RADIUS = 4.4
 ARC = 25  # points of an arc
-TETHER = 12.0
-ARROWS = 14  # along a tether
-THIN_AIR = (
-    (1.004, 60),
-    (1.010, 36),
-    (1.018, 18),
-)  # radius and alpha: the planet is near, the halo must not cover the craft
-
-
-def close_up(pen: Pen, first: Run):
-    """The close-up that suits a craft."""
-    return TetherCloseUp(pen, first) if first.setting.craft.kind == "plasma-brake" else SailCloseUp(pen, first)
 
 
 class SailCloseUp:
@@ -60,6 +48,8 @@ class SailCloseUp:
             pen.arrow_style("/sail/normal", look.NORMAL, look.WIDTH["close arrow"])
             pen.label_style("/sail/normal/name", look.NORMAL, "normal")
         pen.arrow_style("/sail/velocity", look.VELOCITY, look.WIDTH["close arrow"])
+        pen.arrow_style("/sail/primer", look.PRIMER, look.WIDTH["close arrow"])
+        pen.label_style("/sail/primer/name", look.PRIMER, "primer")
         pen.arrow_style("/sail/force/arrow", look.THRUST, look.WIDTH["close thrust"])
         pen.label_style("/sail/velocity/name", look.VELOCITY, "velocity")
         pen.label_style("/sail/force_name", look.THRUST)
@@ -100,7 +90,11 @@ class SailCloseUp:
             pen.arrows("/sail/normal", index, self._length * normal)
             pen.labels("/sail/normal/name", index, 1.06 * self._length * normal)
         pen.arrows("/sail/velocity", index, VELOCITY_LENGTH * velocity)
-        pen.labels("/sail/velocity/name", index, 1.06 * VELOCITY_LENGTH * velocity)
+        still = ~np.any(velocity, axis=1, keepdims=True)
+        pen.labels("/sail/velocity/name", index, np.where(still, np.nan, 1.06 * VELOCITY_LENGTH * velocity))
+        if samples.primer_rtn is not None:
+            pen.arrows("/sail/primer", index, PRIMER_LENGTH * samples.primer_rtn)
+            pen.labels("/sail/primer/name", index, 1.08 * PRIMER_LENGTH * samples.primer_rtn)
         self._add_force(samples)
         self._add_angles(samples)
 
@@ -158,68 +152,6 @@ class SailCloseUp:
         self._pen.static("/sail/force_name", rr.Points3D.from_fields(positions=[f4(9.3 * down)]))
 
 
-class TetherCloseUp:
-    """Writes /sail for a plasma brake: the satellite with its tether hanging over the planet and the drag along it."""
-
-    def __init__(self, pen: Pen, first: Run):
-        self._pen = pen
-        pen.static("/sail", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
-        draw_stars(pen, "/sail/stars", 700.0, 700)
-        craft.draw(pen, "/sail/body/shape", "plasma-brake", near=True)
-        pen.scale("/sail/body/shape", 5.0)
-        craft.tether(pen, "/sail/body/tether", 0.06, 1.8, 0.04, near=True)
-        self._glow = craft.Glow(pen, "/sail/body", "plasma-brake")
-        pen.scale("/sail/body/tether", TETHER)
-        if first.setting.body.radius > 0:
-            draw_planet(pen, "/sail/planet/shape", first.setting.body.name, dimmed=True)
-            draw_air(pen, "/sail/planet/shape/air", THIN_AIR)
-            pen.static("/sail/planet", rr.Transform3D(translation=[0.0, 0.0, -318.0]))
-            pen.scale("/sail/planet/shape", 300.0)
-        pen.arrow_style("/sail/body/force/arrows", look.THRUST, 1.3)
-        pen.label_style("/sail/force_name", look.THRUST)
-        pen.arrow_style("/sail/velocity", look.VELOCITY, 1.8)
-        pen.label_style("/sail/velocity/name", look.VELOCITY, "velocity")
-        pen.arrow_style("/sail/flow", look.dim(look.WIND, 0.6), 0.9)
-        pen.label("/sail/flow_name", "ion ram flow", look.WIND, (8.4, 0, -2.3))
-        pen.label("/sail/tip_name", tether_text(first.setting.craft), look.BUS, (0, 0, -1.04 * TETHER))
-
-    def add(self, samples: Samples) -> None:
-        pen, index, count = self._pen, samples.index, len(samples)
-        velocity, thrust, normal = (turned(v) for v in (samples.velocity_rtn, samples.thrust_rtn, samples.normal_rtn))
-        axes = body_axes(normal, np.tile([0.0, 1.0, 0.0], (count, 1)))
-        axes = axes[..., [1, 0, 2]] * [-1.0, 1.0, 1.0]  # panels across the flight direction
-        pen.move("/sail/body", index, quaternion=quaternion(axes))
-        self._glow.add(samples.index_of, samples.run.thrust.on)
-        pen.arrows("/sail/velocity", index, 8.0 * velocity)
-        pen.labels("/sail/velocity/name", index, 8.6 * velocity)
-        size = samples.run.thrust.magnitude
-        # Uniform along the tether, since the run knows the whole force only. In the tether's own frame, across it:
-        # there the static scale can stretch the arrows and leave their places alone.
-        root = np.sqrt(size)[:, None] * to_frame(axes, unit(thrust)) * [1.0, 1.0, 0.0]
-        down = np.zeros((ARROWS, 3))
-        down[:, 2] = -(0.10 + 0.85 * np.linspace(0, 1, ARROWS)) * TETHER
-        arrows = np.broadcast_to(root[:, None, :], (count, ARROWS, 3))
-        self._add_many("/sail/body/force/arrows", index, arrows, np.broadcast_to(down, arrows.shape))
-        texts = [f"drag {acceleration_text(a)}" if a > 0 else "no drag" for a in size.tolist()]
-        pen.labels("/sail/force_name", index, 0.5 * TETHER * -normal + 10.2 * unit(thrust), texts)
-        origins = 9.0 * velocity[:, None, :] + np.array([[0, y, z] for y in (-1.5, 1.5) for z in (-3, -5.5, -8, -10.5)])
-        self._add_many("/sail/flow", index, np.broadcast_to(-3.4 * velocity[:, None, :], origins.shape), origins)
-
-    def _add_many(self, path: str, index, vectors, origins=None) -> None:
-        """vectors, origins (n, k, 3): k arrows a row."""
-        more = {} if origins is None else {"origins": f4(origins.reshape(-1, 3))}
-        columns = rr.Arrows3D.columns(vectors=f4(vectors.reshape(-1, 3)), **more)
-        self._pen.columns(path, index, columns.partition([vectors.shape[1]] * len(vectors)))
-
-    def size(self, layout: Layout) -> None:
-        self._pen.scale("/sail/body/force", [0.65 * layout.close_thrust_scale, 0.65 * layout.close_thrust_scale, 1.0])
-
-
-def turned(rtn):
-    """Orbital frame (radial, transverse, normal) -> (transverse, normal, radial): up is away from the planet."""
-    return rtn[:, [1, 2, 0]]
-
-
 def arcs(start, end) -> np.ndarray:
     """Great-circle arcs between unit vectors, (n, 3), (n, 3) -> (n, ARC, 3)."""
     across = end - np.sum(start * end, 1, keepdims=True) * start
@@ -238,10 +170,3 @@ def acceleration_text(a: float) -> str:
         if a >= 0.0995 * size:
             return f"{a / size:.3g} {name}"
     return f"{a:.1e} m/s²"
-
-
-def tether_text(craft) -> str:
-    length = craft.tether_length
-    if not length:
-        return "tip mass"
-    return f"tip, {length / 1e3:g} km down" if length >= 1e4 else f"tip, {length:g} m down"

@@ -12,11 +12,12 @@ import rerun as rr
 from sailviz.recording import rows
 from sailviz.recording.about import about, event_line
 from sailviz.recording.blueprint import blueprint
-from sailviz.recording.closeup import close_up
+from sailviz.recording.closeup import SailCloseUp
+from sailviz.recording.curves import Curves
 from sailviz.recording.layout import Extents, Layout, lay_out
 from sailviz.recording.pen import Pen
-from sailviz.recording.plots import Curves
 from sailviz.recording.samples import Frame, Samples
+from sailviz.recording.tether import TetherCloseUp
 from sailviz.recording.world import LADDER, STRIP, World
 from sailviz.run import Event, Run, Setting, join
 
@@ -31,6 +32,8 @@ class Drawing:
         self._waiting: Run | None = None  # drawn rows that do not fill a piece of trail yet
         self._numbers = np.empty(0, int)
         self._drawn = -1  # number of the last row drawn
+        self._before = np.full(2, -np.inf)  # s, times of the last two rows drawn
+        self._rung = 0  # number of the next orbit of the ladder
         self._layout: Layout | None = None
 
     def add(self, block: Run) -> None:
@@ -39,8 +42,8 @@ class Drawing:
         self._extents.add(block)
         self._curves.add(block)
         self._add_ladder(block)
-        picked = rows.on_stride(block, self._frame.every)
-        self._wait(rows.take(block, picked), block.first + np.arange(len(block))[picked])
+        picked = self._picker.pick(block)
+        self._wait(rows.take(block, picked), block.first + picked)
         self._draw(len(self._numbers) // STRIP * STRIP)
         if self._layout is None:
             self._show()
@@ -50,6 +53,8 @@ class Drawing:
         if last.first not in (self._drawn, *self._numbers[-1:]):
             self._wait(last, np.array([last.first]))
         self._draw(len(self._numbers))
+        self._world.finish(Samples.of(last, np.array([last.first]), self._frame))
+        self._extents.finished = True
         self._show()
 
     def add_events(self, events: list[Event], index) -> None:
@@ -62,16 +67,22 @@ class Drawing:
 
     def _begin(self, block: Run) -> None:
         self._frame = Frame.of(block)
+        self._picker = rows.Picker(self._frame.rows, self._frame.most, self._frame.duration)
         self._world = World(self._pen, block, self._frame)
+        close_up = TetherCloseUp if self._setting.craft.kind == "plasma-brake" else SailCloseUp
         self._close_up = close_up(self._pen, block)
         self._curves = Curves(self._pen, block, self._frame)
-        self._pen.static("/about", rr.TextDocument(about(self._setting), media_type=rr.MediaType.MARKDOWN))
+        text = about(self._setting, self._world.notes)
+        self._pen.static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
         start = rows.timelines(self._setting, [block.first], block.time[:1])
         self._pen.columns("/log", start, rr.TextLog.columns(text=["start"], level=[rr.TextLogLevel.INFO]))
 
     def _add_ladder(self, block: Run) -> None:
-        wanted = np.unique(np.arange(LADDER + 1) * (self._setting.rows - 1) // LADDER) - block.first
-        wanted = wanted[(wanted >= 0) & (wanted < len(block))]
+        """Rows at even times, or the first ones after."""
+        rung = (block.time - self._frame.start) / self._setting.duration * LADDER + 1e-9
+        steps = np.floor(rung).astype(int)
+        wanted = np.flatnonzero(np.diff(steps, prepend=self._rung - 1) > 0)
+        self._rung = int(steps[-1]) + 1
         self._world.add_ladder(Samples.of(rows.take(block, wanted), block.first + wanted, self._frame))
 
     def _wait(self, run: Run, numbers) -> None:
@@ -83,7 +94,9 @@ class Drawing:
         """Draw the first `count` of the rows that wait."""
         if count == 0:
             return
-        samples = Samples.of(rows.take(self._waiting, slice(0, count)), self._numbers[:count], self._frame)
+        run, numbers = rows.take(self._waiting, slice(0, count)), self._numbers[:count]
+        samples = Samples.of(run, numbers, self._frame, self._before)
+        self._before = np.concatenate([self._before, samples.run.time])[-2:]
         self._world.add(samples)
         self._close_up.add(samples)
         self._drawn = int(self._numbers[count - 1])

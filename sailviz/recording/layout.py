@@ -8,11 +8,14 @@ import numpy as np
 
 from sailviz.frames import unit
 from sailviz.recording import cameras, look, rows
-from sailviz.recording.plots import Curves
-from sailviz.recording.samples import Frame, Samples
+from sailviz.recording.curves import Curves
+from sailviz.recording.samples import PLANE_TURNS, Frame, Samples
 from sailviz.recording.slots import Slot, column, plot_views
 from sailviz.run import Run, Setting
 
+PUSHES = 400  # rows at which the ends of arrows are looked at
+SEASON = 30 * 86400.0  # s of a run from which the eye over a planet goes along with the Sun
+DESCENT = "Descent (orbits in one plane, to scale)"
 DEPARTING = 0.02  # relative change of distance below which an orbit counts as closed
 
 
@@ -60,10 +63,19 @@ class Extents:
         self.farthest = self.nearest = None  # m
         self.lowest = self.highest = 0.0  # m from the plane x, y
         self.thrust = 0.0  # m/s2
-        self.middle: Run | None = None  # the row in the middle of the run, or the last before it
+        self.reached = 0.0  # s from the first row to the last so far
+        self.finished = False  # whether there will be no more
+        self.middle: Run | None = None  # the last row before the middle of the duration
+        self._start = 0.0  # s, time of the first row
+        self._pushes: list[np.ndarray] = []  # position m and thrust m/s2 of some rows, (k, 6)
         self.bodies: dict[str, float] = {}  # farthest distance of each, m
 
     def add(self, run: Run) -> None:
+        if self.farthest is None:
+            self._start = float(run.time[0])
+        self.reached = float(run.time[-1]) - self._start
+        some = rows.on_stride(run, rows.stride(run.setting.rows, PUSHES))
+        self._pushes.append(np.hstack([run.position[some], run.thrust.acceleration[some]]))
         distance = np.linalg.norm(run.position, axis=1)
         low, high = float(distance.min()), float(distance.max())
         self.farthest = high if self.farthest is None else max(self.farthest, high)
@@ -73,9 +85,16 @@ class Extents:
         self.thrust = max(self.thrust, float(run.thrust.magnitude.max()))
         for name, position in run.bodies.items():
             self.bodies[name] = max(self.bodies.get(name, 0.0), float(np.linalg.norm(position, axis=1).max()))
-        wanted = min(max(run.setting.rows // 2 - run.first, 0), len(run) - 1)
-        if self.middle is None or run.first <= run.setting.rows // 2:
+        halfway = self._start + 0.5 * run.setting.duration
+        wanted = int(np.searchsorted(run.time, halfway, side="right")) - 1
+        if self.middle is None or wanted >= 0:
+            wanted = max(wanted, 0)
             self.middle = replace(rows.take(run, slice(wanted, wanted + 1)), first=run.first + wanted)
+
+    def tips(self, scale: float) -> np.ndarray:
+        """Where arrows of thrust end, m, `scale` m long per m/s2. (k, 3)"""
+        pushes = np.concatenate(self._pushes)
+        return pushes[:, :3] + scale * pushes[:, 3:]
 
 
 def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) -> Layout:
@@ -92,11 +111,13 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
     turns = setting.duration / revolution
     still = extents.farthest - extents.nearest < DEPARTING * extents.farthest
     closed = bool(still and turns > 1.2 and not frame.sparse)
+    thrust_scale = look.THRUST_LENGTH * radius / extents.thrust if extents.thrust > 0 else 1.0
     if frame.sun or setting.body.radius == 0:
-        views = about_sun(radius, extents.lowest / frame.unit, extents.highest / frame.unit, setting)
+        tips = extents.tips(thrust_scale * frame.unit) / frame.unit
+        views = about_sun(radius, extents.lowest / frame.unit, extents.highest / frame.unit, tips, middle, setting)
         tail = min(0.12 * setting.duration, 0.15 * revolution)
     else:
-        views = about_planet(radius, middle, setting)
+        views = about_planet(radius, middle, frame, setting)
         tail = min(2.6 * revolution, 0.3 * setting.duration)
     names = name_views(views, setting, frame, sail, tether)
     timelines = ("sim_time", "step") if setting.epoch is None else ("utc", "sim_time", "step")
@@ -108,7 +129,7 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
         scene_radius=radius,
         sail_size=sail,
         tether_size=tether,
-        thrust_scale=look.THRUST_LENGTH * radius / extents.thrust if extents.thrust > 0 else 1.0,
+        thrust_scale=thrust_scale,
         close_thrust_scale=8.0 / np.sqrt(extents.thrust) if extents.thrust > 0 else 1.0,
         cameras=names,
         close_up=close_up_camera(setting, middle),
@@ -122,7 +143,8 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
         sparse=frame.sparse,
         timeline=timelines[0],
         timelines=timelines,
-        speed=setting.duration / setting.play_duration,
+        speed=(extents.reached if extents.finished and extents.reached > 0 else setting.duration)
+        / setting.play_duration,
         rows_per_second=setting.rows / setting.duration,
     )
 
@@ -151,39 +173,75 @@ def revolution_time(row: Run) -> float:
     return float(min(2 * np.pi / rate, 20 * row.setting.duration)) if rate > 0 else row.setting.duration
 
 
-def about_sun(radius: float, lowest: float, highest: float, setting: Setting) -> list[Camera]:
-    """Cameras of a scene round the Sun: from outside, from the pole, along with the craft."""
+def about_sun(radius: float, lowest: float, highest: float, tips, middle: Samples, setting: Setting) -> list[Camera]:
+    """Cameras of a scene round the Sun: from outside, from the pole, along with the craft.
+
+    tips : (k, 3) view units, where arrows of thrust end: they must be in sight
+    """
     lifted = highest - lowest > 0.12 * radius
     direction = unit(np.array([0.11, -0.90, 0.41] if lifted else [0.05, -0.84, 0.53]))
     # the eye sees a third of its distance up and down: an orbit seen aslant and what rises above it must fit in
     half = 0.5 * (highest - lowest) * np.hypot(*direction[:2]) + look.DISC_RADIUS * radius * direction[2]
     distance = max((2.08 if lifted else 1.6) * radius, half / (0.33 if lifted else 0.40))
+    reach = float(np.linalg.norm(tips[:, :2], axis=1).max())
     raised = 0.45 * (highest + lowest) if highest - lowest > 0.4 * radius else 0.0
     # the near half of an orbit looks larger than the far one: look at a point in front of the Sun
     nearer = 0.0 if lifted else -0.3 * radius
-    middle = np.array([0.0, nearer, 0.02 * radius + raised])
-    sail = setting.craft.kind == "solar-sail"
-    follow = np.array([-0.42, 0.50, 0.26] if sail else [0.30, -0.62, 0.26]) * radius
+    middle_of_view = np.array([0.0, nearer, 0.02 * radius + raised])
+    distance = max(distance, distance_to_see(tips, middle_of_view, direction))
+    follow = follow_eye(middle, setting.craft.kind) * radius
     return [
-        Camera("System", "/", tuple((middle + distance * direction).tolist()), tuple(middle.tolist())),
-        Camera("From the pole", "/", (0.0, -0.01 * radius, max(2.45 * radius, 1.5 * highest))),
+        Camera("System", "/", tuple((middle_of_view + distance * direction).tolist()), tuple(middle_of_view.tolist())),
+        Camera("From the pole", "/", (0.0, -0.01 * radius, max(2.45 * radius, 1.5 * highest, 2.1 * reach))),
         Camera("Follow", "/world/rtn", tuple(follow.tolist()), (-0.12 * radius, 0.0, 0.0)),
     ]
 
 
-def about_planet(radius: float, middle: Samples, setting: Setting) -> list[Camera]:
-    """Cameras of a scene round a planet: over it, along with the craft, along the orbit's pole."""
+def distance_to_see(places, target, direction) -> float:
+    """How far from `target` along `direction` an eye must be to see places (k, 3) within its field, about half of its
+    distance up and down and once its distance sideways."""
+    right = unit(np.cross([0.0, 0.0, 1.0], direction))
+    up = np.cross(direction, right)
+    off = np.asarray(places) - target
+    needed = np.maximum(np.abs(off @ up) / 0.47, np.abs(off @ right) / 0.95) + off @ direction
+    return float(needed.max())
+
+
+def follow_eye(middle: Samples, kind: str) -> np.ndarray:
+    """Where the view along with the craft looks from, in its orbital frame: a film must show its sunward side."""
+    if kind != "solar-sail":
+        return np.array([0.30, -0.62, 0.26])
+    eyes = np.array([[-0.42, side * 0.50, height] for side in (1, -1) for height in (0.26, 0.44)])
+    facing = -unit(eyes) @ middle.normal_rtn[0]
+    return eyes[np.argmax(facing > 0.3)] if np.any(facing > 0.3) else eyes[np.argmax(facing)]
+
+
+def about_planet(radius: float, middle: Samples, frame: Frame, setting: Setting) -> list[Camera]:
+    """Cameras of a scene round a planet: over it, along with the craft, along the orbit's pole, and near the edge of
+    the planet, where altitudes can be read."""
     sun = middle.run.bodies.get("Sun")
     pole = middle.axes[0, :, 2]
-    eye = cameras.over_planet(pole, None if sun is None else unit(sun[0])) * 2.6 * radius
+    eye = cameras.over_planet(pole, None if sun is None else unit(sun[0])) * 2.55 * radius
     above = pole if (pole[2] if sun is None else pole @ unit(sun[0])) >= 0 else -pole  # the day side
-    above = unit(above + 0.05 * middle.axes[0, :, 0]) * 2.6 * radius
+    above = unit(above + 0.05 * middle.axes[0, :, 0]) * 2.55 * radius
     follow = np.array([[0.30, -0.52, 0.24], [-0.06, 0.16, 0.0]]) * radius / 1.1  # tried on low orbits
+    home = "/"
+    if sun is not None and setting.duration > SEASON:  # or the eye would be over the night for half of every year
+        home, azimuth = "/world/season", np.arctan2(sun[0, 1], sun[0, 0])
+        c, s = np.cos(azimuth), np.sin(azimuth)
+        eye, above = (np.array([c * v[0] + s * v[1], c * v[1] - s * v[0], v[2]]) for v in (eye, above))
     return [
-        Camera(setting.body.name, "/", tuple(eye.tolist())),
+        Camera(setting.body.name, home, tuple(eye.tolist())),
         Camera("Follow", "/world/rtn", *(tuple(point) for point in follow.tolist()), (1.0, 0.0, 0.0)),
-        Camera("Orbit pole", "/", tuple(above.tolist())),
+        Camera("Orbit pole", home, tuple(above.tolist())),
+        *(descent_camera(radius) if frame.turns > PLANE_TURNS else ()),
     ]
+
+
+def descent_camera(radius: float) -> list[Camera]:
+    """Over the orbits' plane, at the edge of a planet of radius 1, up to the highest orbit; up is away from it."""
+    middle, distance = 0.5 * (0.98 + radius), 1.15 * (radius - 0.98)
+    return [Camera(DESCENT, "/world/plane", (middle, 0.0, distance), (middle, 0.0, 0.0), (1.0, 0.0, 0.0))]
 
 
 def close_up_camera(setting: Setting, middle: Samples) -> Camera:
@@ -221,6 +279,8 @@ def name_views(views: list[Camera], setting: Setting, frame: Frame, sail: float,
         notes.append(f"{craft.label or 'craft'} ×{in_words(drawn * frame.unit / true)}")
     if frame.sparse and frame.slowed > 1.5:
         notes.append(f"orbiting slowed {in_words(frame.slowed)} times")
+    if views[0].origin != "/":
+        notes.append("turning with the Sun")
     name = views[0].name + (f" ({', '.join(notes)})" if notes else "")
     return (replace(views[0], name=name), *views[1:])
 

@@ -32,6 +32,7 @@ INITIAL = [92, 120, 150]
 HEIGHT = [110, 48, 78]
 REFERENCE = [120, 136, 165]
 APPROXIMATION = [255, 176, 66]
+PRIMER = [64, 224, 208]
 FAULT = [255, 84, 84]
 ECLIPTIC = [60, 90, 150, 6]
 
@@ -53,10 +54,15 @@ OCEAN = [38, 84, 150]
 ROCK = [150, 140, 126]
 
 SERIES = ([100, 190, 255], [255, 176, 66], [98, 214, 160], [236, 124, 190], [190, 160, 255])
-HIGH, BETWEEN, LOW = [100, 190, 255], [206, 130, 226], [255, 112, 67]  # the ramp that colours a descent
+HIGH, BETWEEN, LOW = [100, 190, 255], [226, 206, 196], [255, 112, 67]  # the ramp that colours a descent
+PLASMA = [34, 26, 84], [104, 58, 190], [196, 112, 240], [255, 190, 250]  # the ramp of a band of plasma
+PLASMA_ALPHA = 64
+UNKNOWN = [22, 26, 36]
 LANES = {
     "thrust": {"on": ("Thrust on", [190, 160, 255]), "off": ("Coast", [120, 136, 165])},
+    "brake": {"on": ("Brake on", [190, 160, 255]), "off": ("Brake off", [120, 136, 165])},
     "light": {"on": ("Sunlit", [255, 206, 84]), "off": ("Eclipse", [36, 46, 84])},
+    "force_law_valid": {"on": ("Force law valid", [98, 214, 160]), "off": ("Outside its range", FAULT)},
 }
 
 PLANETS = {
@@ -85,7 +91,7 @@ WIDTH = {  # half the width of a line in ui points
     "close arrow": 1.5,
     "flow": 1.0,
     "arc": 1.4,
-    "ladder": 0.5,
+    "ladder": 0.6,
     "seam": 0.5,
     "plot": 1.6,
     "dense plot": 1.0,
@@ -96,6 +102,7 @@ ANCHOR = 0.01  # ui points: a dot too small to see that carries a label
 SAIL = {"solar-sail": 0.24, "electric-sail": 0.10, "plasma-brake": 0.10, "thruster": 0.10, "none": 0.0}
 THRUST_LENGTH = 0.34
 VELOCITY_LENGTH = 0.26
+PRIMER_LENGTH = 0.30
 SUN_RADIUS = 0.035
 DISC_RADIUS = 1.12
 STARS_RADIUS = 60.0

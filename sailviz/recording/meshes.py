@@ -77,10 +77,10 @@ def sphere(rows: int = 48, columns: int = 96):
     return Mesh(vertices, grid_faces(rows, columns), vertices), uv
 
 
-def cap(half_angle: float, rows: int = 24, columns: int = 72) -> Mesh:
-    """Part of the unit sphere within half_angle of +z, rad."""
+def cap(half_angle: float, rows: int = 24, columns: int = 72, inner: float = 0.0) -> Mesh:
+    """Part of the unit sphere within half_angle of +z and outside `inner`, rad."""
     polar, azimuth = np.meshgrid(
-        np.linspace(0, half_angle, rows + 1), np.linspace(0, 2 * np.pi, columns + 1), indexing="ij"
+        np.linspace(inner, half_angle, rows + 1), np.linspace(0, 2 * np.pi, columns + 1), indexing="ij"
     )
     vertices = np.stack([np.sin(polar) * np.cos(azimuth), np.sin(polar) * np.sin(azimuth), np.cos(polar)], -1)
     vertices = vertices.reshape(-1, 3)
@@ -224,7 +224,7 @@ def textured_glb(mesh: Mesh, uv: np.ndarray, jpeg: bytes) -> bytes:
         ("POSITION", np.ascontiguousarray(mesh.vertices, "<f4"), "VEC3", 5126, 34962),
         ("NORMAL", np.zeros(mesh.vertices.shape, "<f4"), "VEC3", 5126, 34962),
         ("TEXCOORD_0", np.ascontiguousarray(uv, "<f4"), "VEC2", 5126, 34962),
-        ("indices", np.ascontiguousarray(mesh.faces.ravel(), "<u4"), "SCALAR", 5125, 34963),
+        ("indices", np.ascontiguousarray(mesh.faces.ravel(), "<u2"), "SCALAR", 5123, 34963),
     ]
     blob, views, accessors = b"", [], []
     for number, (_, values, kind, component, target) in enumerate(arrays):

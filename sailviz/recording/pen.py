@@ -75,6 +75,14 @@ class Pen:
         more = {} if colors is None else {"colors": np.asarray(colors, np.uint32)}
         self.columns(path, index, rr.LineStrips3D.columns(strips=f4(strips), **more))
 
+    def broken_strips(self, path: str, index, groups, colors=None) -> None:
+        """groups : for each row a list of lines (k, 3); colors (n,) 0xRRGGBBAA."""
+        lines = [f4(line) for group in groups for line in group]
+        columns = [*rr.LineStrips3D.columns(strips=lines).partition([len(group) for group in groups])]
+        if colors is not None:
+            columns += rr.LineStrips3D.columns(colors=np.asarray(colors, np.uint32))
+        self.columns(path, index, columns)
+
     def label(self, path: str, text: str, color, position=(0.0, 0.0, 0.0)) -> None:
         """A text that stays where it is in its parent's frame. It hangs below its point."""
         self.static(
@@ -87,6 +95,9 @@ class Pen:
         self.static(path, rr.Points3D.from_fields(radii=points(ANCHOR), colors=[list(color)], show_labels=True, **more))
 
     def labels(self, path: str, index, positions, texts=None) -> None:
-        """positions (n, 3), texts (n): one label a row."""
-        more = {} if texts is None else {"labels": list(texts)}
-        self.columns(path, index, rr.Points3D.columns(positions=f4(positions), **more))
+        """positions (n, 3), texts (n): one label a row, none where a position is NaN."""
+        known = np.all(np.isfinite(positions), axis=1)
+        columns = [*rr.Points3D.columns(positions=f4(positions[known])).partition(known.astype(int))]
+        if texts is not None:
+            columns += rr.Points3D.columns(labels=list(texts))
+        self.columns(path, index, columns)

@@ -1,7 +1,4 @@
-"""Curves for people, in people's units, under /plots; on and off as coloured lanes under /phase.
-
-At most PLOT_ROWS rows are drawn, evenly spaced by their number in the run; the numbers of every row are in the truth.
-"""
+"""Which curves a run has, for people and in people's units, and the ranges in which they are shown."""
 
 from __future__ import annotations
 
@@ -9,13 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import rerun as rr
 
-from sailviz.recording import look, rows
+from sailviz.recording import look
 from sailviz.recording.samples import Frame
 from sailviz.run import Run
-
-PLOT_ROWS = 20_000
 
 
 @dataclass(frozen=True)
@@ -50,8 +44,13 @@ UNITS = {  # ending of a name -> factor and unit on the plot; the longest that f
     "_m_s2": (1e3, "mm/s²"),
     "_T": (1e9, "nT"),
     "_s": (1.0, "s"),
+    "_u": (1.0, "u"),
+    "_sfu": (1.0, "sfu"),
 }
 LOGARITHMIC = {"_m3": "1/m³", "_1_m3": "1/m³", "_m_3": "1/m³", "_kg_m3": "kg/m³", "_per_m3": "1/m³"}
+LOGARITHMIC_COLUMNS = {"air_drag_N": "N"}  # over many powers of ten although of another unit
+DRAWN_OTHERWISE = ("earth_rotation_rad", "quasi_circular_altitude_m", "primer_direction")
+COLORS = {"plasma_density_per_m3": look.SERIES[4], "plasma_force_N_m": look.THRUST, "air_drag_N": look.SERIES[1]}
 
 
 def degrees(*columns) -> np.ndarray:
@@ -79,7 +78,12 @@ def plots_of(first: Run, frame: Frame) -> list[Plot]:
     """All curves that are written of a run; the layout shows those that say something."""
     unit, name = thrust_units(first)
     kind = "Drag" if first.setting.craft.kind == "plasma-brake" else "Thrust"
-    environment = [name for name, values in first.environment.items() if values.dtype != bool]
+    environment = [
+        name
+        for name, values in first.environment.items()
+        if values.dtype != bool and values.ndim == 1 and name not in DRAWN_OTHERWISE
+    ]
+    steered = first.setting.craft.kind != "plasma-brake"
     return [
         distance_plot(first, frame),
         Plot(
@@ -97,6 +101,23 @@ def plots_of(first: Run, frame: Frame) -> list[Plot]:
             look.SERIES[3:4],
             lambda run: run.elements.eccentricity[:, None],
         ),
+        *(angle_plots(first) if steered else []),
+        Plot(
+            "/plots/thrust",
+            f"{kind} acceleration [{name}]",
+            (kind.lower(),),
+            (look.THRUST,),
+            lambda run: unit * run.thrust.magnitude[:, None],
+            from_zero=True,
+        ),
+        *([approximation_plot(first)] if first.approximations else []),
+        *(environment_plot(name, COLORS.get(name, look.SERIES[(4 + k) % 5])) for k, name in enumerate(environment)),
+    ]
+
+
+def angle_plots(first: Run) -> list[Plot]:
+    """Pitch, cone and clock angle."""
+    return [
         Plot(
             "/plots/angles",
             "Pitch and cone angle [deg]",
@@ -113,21 +134,13 @@ def plots_of(first: Run, frame: Frame) -> list[Plot]:
             clock_about(first.attitude.clock[0]),
             noise=1e-3,
         ),
-        Plot(
-            "/plots/thrust",
-            f"{kind} acceleration [{name}]",
-            (kind.lower(),),
-            (look.THRUST,),
-            lambda run: unit * run.thrust.magnitude[:, None],
-            from_zero=True,
-        ),
-        *([approximation_plot(first)] if first.approximations else []),
-        *(environment_plot(name, look.SERIES[(4 + k) % 5]) for k, name in enumerate(environment)),
     ]
 
 
 def distance_plot(first: Run, frame: Frame) -> Plot:
     """Distance and semi-major axis: over a planet from its surface, in km, elsewhere from the centre, in view units."""
+    if first.setting.craft.kind == "plasma-brake" and first.setting.body.radius:
+        return descent_plot(first)
     radius = 0.0 if frame.sun else first.setting.body.radius
     unit = 1e3 if radius else frame.unit
 
@@ -139,6 +152,24 @@ def distance_plot(first: Run, frame: Frame) -> Plot:
         return Plot("/plots/altitude", "Altitude [km]", ("h", "a - R"), look.SERIES[:2], values)
     title = f"Distance r and semi-major axis a [{frame.unit_name}]"
     return Plot("/plots/distance", title, ("r", "a"), look.SERIES[:2], values)
+
+
+def descent_plot(first: Run) -> Plot:
+    """Altitudes over the equator's radius: of perigee, semi-major axis and apogee, and of the analytic decay."""
+    radius = first.setting.body.radius
+    analytic = "quasi_circular_altitude_m" in first.environment
+
+    def values(run: Run) -> np.ndarray:
+        a, e = bound(run.elements.semi_major_axis), run.elements.eccentricity
+        columns = [a * (1 - e) - radius, a * (1 + e) - radius, a - radius]
+        if analytic:
+            columns.append(run.environment["quasi_circular_altitude_m"])
+        return np.stack(columns, 1) / 1e3
+
+    names, colors = ("perigee", "apogee", "mean"), (look.SERIES[2], look.SERIES[3], look.SERIES[0])
+    if analytic:
+        names, colors = (*names, "analytic decay"), (*colors, look.SERIES[1])
+    return Plot("/plots/altitude", "Altitude [km]", names, colors, values)
 
 
 def thrust_units(first: Run) -> tuple[float, str]:
@@ -166,97 +197,20 @@ def environment_plot(name: str, color) -> Plot:
     ending = max((u for u in (*UNITS, *LOGARITHMIC) if name.endswith(u)), key=len, default="")
     words = name.removesuffix(ending).replace("_", " ")
     words = words[:1].upper() + words[1:]
-    if ending in LOGARITHMIC:
+    if ending in LOGARITHMIC or name in LOGARITHMIC_COLUMNS:
 
         def values(run):
             with np.errstate(divide="ignore", invalid="ignore"):
                 return np.log10(run.environment[name])[:, None]
 
-        title = f"{words} [log10 {LOGARITHMIC[ending]}]"
+        unit = LOGARITHMIC_COLUMNS[name] if name in LOGARITHMIC_COLUMNS else LOGARITHMIC[ending]
+        title = f"{words} [log10 {unit}]"
         return Plot(f"/plots/{name}", title, (words.lower(),), (color,), values)
     factor, unit = UNITS.get(ending, (1.0, ""))
     title = f"{words} [{unit}]" if unit else words
     return Plot(
         f"/plots/{name}", title, (words.lower(),), (color,), lambda run: factor * run.environment[name][:, None]
     )
-
-
-class Curves:
-    """Writes the plots of a run and remembers how far they reach."""
-
-    def __init__(self, pen, first: Run, frame: Frame):
-        self._pen = pen
-        self._every = rows.stride(first.setting.rows, PLOT_ROWS)
-        self.plots = plots_of(first, frame)
-        self.ranges: dict[str, tuple[float, float]] = {}
-        self._lanes = {"thrust": lambda run: run.thrust.on} | {
-            name: (lambda run, name=name: run.environment[name])
-            for name, v in first.environment.items()
-            if v.dtype == bool
-        }
-        self._state: dict[str, bool] = {}
-        self.changes = dict.fromkeys(self._lanes, 0)
-        dense = frame.turns > 60
-        width = look.WIDTH["dense plot" if dense else "plot"]
-        for plot in self.plots:
-            # the later curve lies on top: thinner, so that an equal one below it still shows
-            widths = [width * (1.6 if k < len(plot.names) - 1 else 1.0) for k in range(len(plot.names))]
-            style = rr.SeriesLines(
-                names=list(plot.names),
-                colors=[list(color) for color in plot.colors],
-                widths=widths,
-                aggregation_policy=rr.components.AggregationPolicy.MinMax,  # the mean would hide an oscillation
-            )
-            pen.static(plot.path, style)
-        for lane in self._lanes:
-            on, off = look.LANES.get(
-                lane,
-                look.LANES["light"]
-                if "sunlit" in lane
-                else {"on": (lane, look.SERIES[0]), "off": (f"no {lane}", look.REFERENCE)},
-            ).values()
-            pen.static(
-                f"/phase/{lane}",
-                rr.StateConfiguration(values=["on", "off"], labels=[on[0], off[0]], colors=[on[1], off[1]]),
-            )
-
-    def add(self, run: Run) -> None:
-        """A block of a run, all rows."""
-        drawn = rows.on_stride(run, self._every)
-        picked = rows.take(run, drawn)
-        index = rows.timelines(run.setting, run.first + np.arange(len(run))[drawn], picked.time)
-        for plot in self.plots:
-            self._stretch(plot.path, plot.values(run))
-            if len(picked):
-                values = plot.values(picked)
-                self._pen.columns(
-                    plot.path, index, rr.Scalars.columns(scalars=np.where(np.isfinite(values), values, np.nan))
-                )
-        for lane, values in self._lanes.items():
-            self._add_lane(lane, run, np.asarray(values(run), bool))
-
-    def _stretch(self, path: str, values) -> None:
-        for k in range(values.shape[1]):
-            finite = values[np.isfinite(values[:, k]), k]
-            if len(finite):
-                low, high = self.ranges.get(f"{path}:{k}", (np.inf, -np.inf))
-                self.ranges[f"{path}:{k}"] = (min(low, float(finite.min())), max(high, float(finite.max())))
-
-    def _add_lane(self, lane: str, run: Run, on) -> None:
-        """Only the changes are written."""
-        before = self._state.get(lane)
-        changed = np.flatnonzero(np.diff(on, prepend=not on[0] if before is None else before))
-        self._state[lane] = bool(on[-1])
-        if len(changed):
-            self.changes[lane] += len(changed) - (before is None)
-            index = rows.timelines(run.setting, run.first + changed, run.time[changed])
-            states = np.where(on[changed], "on", "off").tolist()
-            self._pen.columns(f"/phase/{lane}", index, rr.StateChange.columns(state=states))
-
-    def reach(self, path: str) -> tuple[float, float]:
-        """Smallest and largest value that a plot has shown."""
-        pairs = [pair for key, pair in self.ranges.items() if key.rsplit(":", 1)[0] == path]
-        return (min(low for low, _ in pairs), max(high for _, high in pairs)) if pairs else (0.0, 1.0)
 
 
 def nice_range(low: float, high: float, numbers: float = 4.0) -> tuple[float, float]:

@@ -70,7 +70,7 @@ class Recording:
 
     @property
     def application_id(self) -> str:
-        """`sailviz_<family>`, or the name of the application that wrote the file."""
+        """`sailviz_<family>_<start of the identity>`, or the name of the application that wrote the file."""
         return self._reader.recordings()[0].application_id
 
     @property

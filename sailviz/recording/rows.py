@@ -41,6 +41,38 @@ def on_stride(run: Run, every: int) -> slice:
     return slice(-run.first % every, None, every)
 
 
+class Picker:
+    """Chooses the rows that are drawn: every so many, and where rows lie far apart in time more, so that neither a
+    dense window nor the long stretches about it go short.
+
+    Of evenly spaced rows these are those on the stride. Of others there are at most two thirds of `most` more.
+    """
+
+    def __init__(self, rows: int, most: int, duration: float):
+        self._every = stride(rows, most)
+        self._gap = 1.5 * self._every * duration / max(rows - 1, 1)
+        self._last = -np.inf  # time of the row chosen last, s
+
+    def pick(self, run: Run) -> np.ndarray:
+        """Indices of the chosen rows of the next block."""
+        chosen = np.arange(len(run))[on_stride(run, self._every)]
+        time = run.time
+        marks = np.concatenate([[self._last], time[chosen], time[-1:]])
+        if self._every > 1 and np.any(np.diff(marks) > self._gap):
+            chosen = self._walk(run.first, time.tolist())
+        if len(chosen):
+            self._last = float(time[chosen[-1]])
+        return chosen
+
+    def _walk(self, first: int, time: list[float]) -> np.ndarray:
+        last, chosen = self._last, []
+        for i, moment in enumerate(time):
+            if (first + i) % self._every == 0 or moment - last >= self._gap:
+                chosen.append(i)
+                last = moment
+        return np.array(chosen, int)
+
+
 def check_duration(run: Run) -> None:
     """Raise RecordingError where a time of the run does not fit a timeline."""
     last = max(abs(run.setting.duration), abs(float(run.time[-1])) if len(run) else 0.0)

@@ -1,5 +1,5 @@
-"""The rows of which a picture is made, in the units of the view. At most PICTURE_ROWS of them, evenly spaced over the
-run.
+"""The rows of which a picture is made, in the units of the view: about PICTURE_ROWS of them, spread over the run's rows
+and over its time.
 """
 
 from __future__ import annotations
@@ -8,16 +8,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailviz.constants import AU
+from sailviz.constants import AU, ROTATION_EARTH
 from sailviz.elements import Elements, state
-from sailviz.frames import rtn, to_frame, unit
+from sailviz.frames import quaternion, rtn, to_frame, unit
 from sailviz.recording import rows
 from sailviz.run import Run, Setting
 
 PICTURE_ROWS = 3000  # as many as a replay of 40 s has frames, and then some
+SPARSE_ROWS = 1200  # where the craft goes round slowly
 SPARSE = 1 / 12  # revolutions between drawn rows above which lines from row to row would be a zigzag
 TURNS = 30.0  # revolutions that are shown of a run whose rows are sparse
+PLANE_TURNS = 6.0  # revolutions round a planet from which a run shows the plane of its orbit
 SMOOTH = 72  # points of a trail per revolution
+CLOSE = 1 / 6  # revolutions between drawn rows below which the place of each is its own even there
+STILL = 1e-6  # of the circular speed: below it a velocity has no direction
 
 
 @dataclass(frozen=True)
@@ -25,14 +29,17 @@ class Frame:
     """How a run is drawn; known from its first row, so that it never depends on the blocks in which the run arrives.
 
     unit m is the length 1 of the system view. With sparse rows the craft is drawn on its osculating orbit, going round
-    `TURNS` times in all: its distance, orbit and attitude are those of the row, its place along the orbit is not.
+    `TURNS` times in all, and the Earth turns as much slower: distance, orbit and attitude are those of the row, the
+    place along the orbit is not. Only where rows are close for a while is it drawn where it was.
     """
 
     unit: float
     unit_name: str
     sun: bool  # the Sun is in the centre
-    every: int
+    most: int  # rows that are drawn, about
     rows: int
+    start: float  # s
+    duration: float  # s
     mu: float
     period: float  # s of a revolution at the start; inf where it never comes round
     sparse: bool
@@ -46,19 +53,21 @@ class Frame:
         setting, first = run.setting, rows.take(run, slice(0, 1))
         distance = float(np.linalg.norm(first.position[0]))
         length, name = unit_of(setting, distance)
-        every = rows.stride(setting.rows, PICTURE_ROWS)
         a = float(first.elements.semi_major_axis[0])
         period = 2 * np.pi * np.sqrt(a**3 / setting.body.mu) if np.isfinite(a) and a > 0 else np.inf
-        spacing = setting.duration / max(setting.rows - 1, 1) * every / period
+        spacing = setting.duration / max(setting.rows - 1, 1) * rows.stride(setting.rows, PICTURE_ROWS) / period
+        sparse = bool(spacing > SPARSE)
         return Frame(
             unit=length,
             unit_name=name,
             sun=setting.body.name == "Sun",
-            every=every,
+            most=SPARSE_ROWS if sparse else PICTURE_ROWS,
             rows=setting.rows,
+            start=float(first.time[0]),
+            duration=setting.duration,
             mu=setting.body.mu,
             period=period,
-            sparse=bool(spacing > SPARSE),
+            sparse=sparse,
             longitude=float(longitude(first.elements)[0]),
             turns=setting.duration / period,
             smooth=int(np.clip(np.ceil(SMOOTH * spacing), 1, 12)),
@@ -98,16 +107,33 @@ class Samples:
     velocity: np.ndarray  # (n, 3) view units per second, at the drawn place
     normal_rtn: np.ndarray
     thrust_rtn: np.ndarray  # m/s2
-    velocity_rtn: np.ndarray  # unit vector
+    velocity_rtn: np.ndarray  # unit vector, zero where the craft stands still
+    primer_rtn: np.ndarray | None  # unit vector of an optimal transfer's primer
+    earth_rotation: np.ndarray | None  # (n,) rad, as drawn
+    own_place: np.ndarray  # (n,) bool, whether the craft is drawn where it was
 
     @staticmethod
-    def of(run: Run, number, frame: Frame) -> Samples:
+    def of(run: Run, number, frame: Frame, before=(-np.inf, -np.inf)) -> Samples:
+        """before : s, times of the two rows drawn before these."""
         position, velocity = run.position, run.velocity
         axes = rtn(position, velocity)
         normal_rtn, velocity_rtn = to_frame(axes, run.attitude.normal), to_frame(axes, unit(velocity))
+        pace = np.linalg.norm(velocity, axis=1) / np.sqrt(frame.mu / np.linalg.norm(position, axis=1))
+        velocity_rtn = np.where((pace > STILL)[:, None], velocity_rtn, 0.0)
+        primer, turned = run.environment.get("primer_direction"), run.environment.get("earth_rotation_rad")
+        primer_rtn = None if primer is None else to_frame(axes, primer)
+        close = np.ones(len(run), bool)
         if frame.sparse:
-            position, velocity = slowed(run, number, frame)
+            times = np.concatenate([before, run.time])
+            close = times[1:] - CLOSE * frame.period < times[:-1]
+            close = close[1:] & close[:-1]
+            even_position, even_velocity = slowed(run, frame)
+            position = np.where(close[:, None], position, even_position)
+            velocity = np.where(close[:, None], velocity, even_velocity)
             axes = rtn(position, velocity)
+            if turned is not None:
+                back = ROTATION_EARTH * (1 - 1 / frame.slowed) * (run.time - frame.start)  # what it turns less
+                turned = np.where(close, turned, turned - back)
         return Samples(
             run=run,
             number=number,
@@ -118,20 +144,36 @@ class Samples:
             normal_rtn=normal_rtn,
             thrust_rtn=run.thrust.acceleration_rtn,
             velocity_rtn=velocity_rtn,
+            primer_rtn=primer_rtn,
+            earth_rotation=turned,
+            own_place=close,
         )
 
     def __len__(self) -> int:
         return len(self.number)
+
+    @property
+    def lit(self) -> np.ndarray:
+        """Whether the craft is in sunlight: by its row where it is drawn in its own place, else outside of the shadow
+        as it is drawn. (n,) bool
+        """
+        sun = self.run.bodies.get("Sun")
+        if sun is None:
+            return self.run.environment.get("sunlit", np.ones(len(self), bool)).astype(bool)
+        away = np.sum(self.position * unit(sun), 1)
+        outside = (away > 0) | (np.linalg.norm(self.position - away[:, None] * unit(sun), axis=1) > 1)
+        known = self.own_place & ("sunlit" in self.run.environment)
+        return np.where(known, self.run.environment.get("sunlit", outside).astype(bool), outside)
 
     def index_of(self, some) -> list:
         """The timelines of some of the rows."""
         return rows.timelines(self.run.setting, self.number[some], self.run.time[some])
 
 
-def slowed(run: Run, number, frame: Frame):
+def slowed(run: Run, frame: Frame):
     """Places and velocities on the osculating orbits that go round evenly, `TURNS` times over the whole run."""
     e = run.elements
-    shown = frame.longitude + 2 * np.pi * min(TURNS, frame.turns) * number / max(frame.rows - 1, 1)
+    shown = frame.longitude + 2 * np.pi * min(TURNS, frame.turns) * (run.time - frame.start) / frame.duration
     closed = e.eccentricity < 1
     with np.errstate(invalid="ignore", divide="ignore"):
         anomaly = np.where(closed, shown - e.raan - e.argument, e.true_anomaly)
@@ -140,6 +182,29 @@ def slowed(run: Run, number, frame: Frame):
         )
     known = np.all(np.isfinite(position), axis=1, keepdims=True)
     return np.where(known, position, run.position), np.where(known, velocity, run.velocity)
+
+
+def rings(run: Run, axes, frame: Frame) -> dict[str, np.ndarray]:
+    """What makes a circle of radius 1 in x, y the osculating orbits: translation (n, 3), quaternion (n, 4) and scale
+    (n, 3), view units. `axes` (n, 3, 3), columns: the frame in which they are given, z the orbit's normal. Open orbits
+    shrink to a point.
+    """
+    e = run.elements
+    node = np.stack([np.cos(e.raan), np.sin(e.raan), 0 * e.raan], 1)
+    normal = unit(np.cross(run.position, run.velocity))
+    ahead = np.cross(normal, node)
+    along = np.cos(e.argument)[:, None] * node + np.sin(e.argument)[:, None] * ahead
+    along = to_frame(axes, along)
+    closed = (e.eccentricity < 1) & np.isfinite(e.semi_major_axis) & np.all(np.isfinite(along), axis=1)
+    a = np.where(closed, e.semi_major_axis / frame.unit, 1e-6)
+    across = np.where(closed, np.sqrt(np.clip(1 - e.eccentricity**2, 1e-12, 1)), 1.0)
+    z = to_frame(axes, normal)
+    turn = quaternion(np.stack([along, np.cross(z, along), z], -1))
+    return {
+        "translation": np.where(closed[:, None], -(a * e.eccentricity)[:, None] * along, 0.0),
+        "quaternion": np.where(closed[:, None], turn, [0.0, 0.0, 0.0, 1.0]),
+        "scale": np.stack([a, a * across, a], 1),
+    }
 
 
 def orbits(run: Run, frame: Frame, count: int = 121) -> np.ndarray:
@@ -157,6 +222,21 @@ def orbits(run: Run, frame: Frame, count: int = 121) -> np.ndarray:
         columns = (e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument)
         line, _ = state(*(column[:, None] for column in columns), anomaly, frame.mu)
     line = np.where(np.isfinite(line), line, run.position[:, None, :])
+    return line / frame.unit
+
+
+def arc(run: Run, row: int, start, gap: float, frame: Frame) -> np.ndarray:
+    """The way to a row on its osculating orbit: from the place nearest to `start` (3,) m, or once round where the gap
+    of so many s is longer than that. (k, 3) view units.
+    """
+    e = run.elements
+    a, eccentricity = float(e.semi_major_axis[row]), float(e.eccentricity[row])
+    radial, ahead = rtn(run.position[row], run.velocity[row])[:, :2].T
+    behind = np.mod(np.arctan2(-start @ ahead, start @ radial), 2 * np.pi)
+    if gap > 2 * np.pi * np.sqrt(a**3 / frame.mu):
+        behind = 2 * np.pi
+    anomaly = e.true_anomaly[row] - behind * np.linspace(1, 0, int(np.ceil(SMOOTH * behind / (2 * np.pi))) + 1)
+    line, _ = state(a, eccentricity, e.inclination[row], e.raan[row], e.argument[row], anomaly, frame.mu)
     return line / frame.unit
 
 

@@ -4,11 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from sailviz.recording.plots import Curves, nice_range
+from sailviz.recording.curves import Curves
+from sailviz.recording.plots import nice_range
 from sailviz.recording.samples import Frame
 
 ALWAYS = ("distance", "altitude", "inclination", "eccentricity", "angles", "clock", "thrust")
 ALWAYS = tuple(f"/plots/{name}" for name in ALWAYS)
+BRAKE = (  # what a tether's run shows below its altitude; what is in one place shares it as tabs
+    ("plasma_density", "mean_ion_mass", "air_density", "solar_flux"),
+    ("plasma_force", "thrust", "air_drag"),
+    ("tether_current", "tether_power", "tether_voltage", "tether_tilt"),
+)
 COLUMN, FURNITURE, NUMBER = 640.0, 48.0, 19.0  # pixels: the plots on a laptop, title and axis of one, a number
 
 
@@ -30,8 +36,8 @@ class Slot:
     share: float
 
 
-def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple[PlotView, ...], ...]:
-    """Which curves are shown: first those that every run has, then what the environment did.
+def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple, tuple]:
+    """Which curves are shown: first those that every run has, then in groups what the environment did.
 
     steers : whether the craft has angles that mean something
     """
@@ -55,14 +61,22 @@ def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple[PlotVi
         low, high = max(min(r_low, a_low), 0.5 * r_low), min(max(r_high, a_high), 1.5 * r_high)
         shown.append(view("/plots/distance", low=low, high=high, share=3.0))
     else:
-        shown.append(view("/plots/altitude", share=3.0))
+        known_descent = len(known["/plots/altitude"].names) > 2
+        shown.append(view("/plots/altitude", share=3.0, legend="LeftBottom" if known_descent else "RightTop"))
     tilt = curves.reach("/plots/inclination")
     tilted = tilt[1] > 0.05 and (frame.sun or tilt[1] - tilt[0] > 0.05)
     shown.append(view("/plots/inclination" if tilted else "/plots/eccentricity"))
     shown += angle_views(curves, view) if steers else []
-    shown.append(view("/plots/thrust"))
-    environment = tuple(view(path) for path in known if path not in ALWAYS)
-    return tuple(shown), environment
+    tether = "/plots/plasma_force_N_m" in known
+    shown += [] if tether else [view("/plots/thrust")]
+    others = [path for path in known if path not in ALWAYS or (tether and path == "/plots/thrust")]
+    groups = []
+    for stems in BRAKE if tether else ():
+        group = [path for stem in stems for path in others if path.startswith(f"/plots/{stem}")]
+        others = [path for path in others if path not in group]
+        groups.append(tuple(view(path) for path in group))
+    groups.append(tuple(view(path) for path in others))
+    return tuple(shown), tuple(group for group in groups if group)
 
 
 def angle_views(curves: Curves, view) -> list[PlotView]:
@@ -85,8 +99,7 @@ def column(shown, environment, lanes) -> tuple[tuple[Slot, ...], float]:
     More than five rows are not readable on a laptop: then the plot of the orbit's shape goes behind the first.
     """
     slots = [Slot((plot,), plot.share) for plot in shown]
-    if environment:
-        slots.append(Slot(environment, 2.6))
+    slots += [Slot(group, 2.6) for group in environment]
     lane_share = 1.3 + 0.7 * len(lanes) if lanes else 0.0
     if len(slots) + bool(lanes) > 5:
         slots[:2] = [Slot(slots[0].plots + slots[1].plots, slots[0].share)]

@@ -8,26 +8,23 @@ turning.
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import rerun as rr
 
-import sailviz
 from sailviz.frames import body_axes, from_frame, quaternion, unit
 from sailviz.recording import craft, look, meshes
 from sailviz.recording.layout import Layout
 from sailviz.recording.look import points
 from sailviz.recording.pen import Pen, f4
-from sailviz.recording.samples import Frame, Samples, orbits, smooth_lines
+from sailviz.recording.plane import OrbitPlane, notes
+from sailviz.recording.planet import Planet
+from sailviz.recording.samples import PLANE_TURNS, SPARSE, Frame, Samples, arc, orbits, smooth_lines
 from sailviz.recording.truth import word
 from sailviz.run import Reference, Run
 
 STRIP = 4  # drawn rows in one piece of the trail
 LADDER = 12  # osculating orbits that show a long descent
-NIGHT_EDGES = np.radians(np.linspace(100, 78, 24))  # half-angles of nested shells: together a soft terminator
-NIGHT_ALPHA = 38
-HALO = ((1.012, 80), (1.025, 48), (1.042, 28), (1.065, 14))  # radius, alpha
+GAP = 2 * SPARSE  # revolutions between rows over which a curve through both would miss the orbit
 
 
 class World:
@@ -39,14 +36,16 @@ class World:
         pen.static("/world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
         draw_stars(pen, "/world/stars", 1.0)
         self._planet = not frame.sun and self._setting.body.radius > 0
+        self._center = Planet(pen, first) if self._planet else None
+        self._plane = OrbitPlane(pen, first, frame, LADDER) if self._has_plane else None
+        self.notes = notes(first, frame, LADDER) if self._plane else []
+        if self._setting.family == "transfers":
+            self.notes.append("orbits: pink the target (drawn 0.6 % large), cyan and thin the one reached")
+        if "primer_direction" in first.environment:
+            self.notes.append("the **turquoise** arrow is the primer vector, which the steering follows")
         if frame.sun:
             draw_sun(pen)
-        elif self._planet:
-            draw_planet(pen, "/world/center", self._setting.body.name)
-            draw_air(pen, "/world/center/air")
-            if "Sun" in first.bodies:
-                draw_night(pen)
-        else:
+        elif not self._planet:
             pen.static("/world/center", rr.Points3D([[0, 0, 0]], radii=points(7), colors=[look.SUN]))
         if not self._planet:
             disc = meshes.annulus(0.06, look.DISC_RADIUS)
@@ -80,12 +79,14 @@ class World:
         self._glow = craft.Glow(pen, "/world/craft/body", kind)
         pen.arrow_style("/world/craft/thrust/arrow", look.THRUST, look.WIDTH["thrust"])
         pen.arrow_style("/world/craft/velocity/arrow", look.VELOCITY, look.WIDTH["velocity"])
+        pen.arrow_style("/world/craft/primer/arrow", look.PRIMER, look.WIDTH["velocity"])
+        pen.label_style("/world/craft/primer/name", look.PRIMER, "primer")
 
     def _draw_trail_style(self) -> None:
         pen, color = self._pen, None if self._planet else look.TRAIL_RECENT
-        if self._frame.sparse:
+        if self._frame.sparse and not self._plane:
             pen.strip_style("/world/orbit", color, look.WIDTH["recent"] * 0.8)
-        else:
+        elif not self._frame.sparse:
             pen.strip_style("/world/trail/recent", color, look.WIDTH["recent"])
             if not self._planet:
                 pen.strip_style("/world/trail/past", look.TRAIL_PAST, look.WIDTH["past"])
@@ -95,9 +96,13 @@ class World:
 
     @property
     def _has_ladder(self) -> bool:
-        return self._frame.sparse or (self._planet and self._frame.turns > 6)
+        return self._frame.sparse or self._has_plane
 
-    def add(self, samples: Samples, last: bool = False) -> None:
+    @property
+    def _has_plane(self) -> bool:
+        return self._planet and self._frame.turns > PLANE_TURNS
+
+    def add(self, samples: Samples) -> None:
         """A group of drawn rows: whole pieces of trail, except at the end of the run."""
         pen, index = self._pen, samples.index
         pen.move("/world/craft", index, translation=samples.position)
@@ -107,10 +112,14 @@ class World:
         self._glow.add(samples.index_of, samples.run.thrust.on)
         pen.arrows("/world/craft/thrust/arrow", index, from_frame(samples.axes, samples.thrust_rtn))
         pen.arrows("/world/craft/velocity/arrow", index, from_frame(samples.axes, samples.velocity_rtn))
+        if samples.primer_rtn is not None:
+            primer = from_frame(samples.axes, samples.primer_rtn)
+            pen.arrows("/world/craft/primer/arrow", index, primer)
+            pen.labels("/world/craft/primer/name", index, 1.06 * primer)
+        if self._center:
+            self._center.add(samples)
         for name, position in samples.run.bodies.items():
-            if name == "Sun":
-                self._add_sun(samples, position)
-            else:
+            if name != "Sun":
                 pen.columns(
                     f"/world/planets/{name}/body", index, rr.Points3D.columns(positions=f4(position / self._frame.unit))
                 )
@@ -124,15 +133,13 @@ class World:
             foot = samples.position * [1.0, 1.0, 0.0]
             pen.strips("/world/sun_line", index, np.stack([zero, samples.position], 1))
             pen.strips("/world/height", index, np.stack([foot, samples.position], 1))
-        if self._frame.sparse:
-            self._add_orbits(samples)
-        else:
+        if self._plane:
+            self._plane.add(samples, self._ramp(samples))
+        elif self._frame.sparse:
+            colors = self._ramp(samples) if self._planet else None
+            pen.strips("/world/orbit", index, orbits(samples.run, self._frame), colors)
+        if not self._frame.sparse:
             self._add_trail(samples)
-
-    def _add_orbits(self, samples: Samples) -> None:
-        colors = self._ramp(samples) if self._planet else None
-        lines = orbits(samples.run, self._frame)
-        self._pen.strips("/world/orbit", samples.index, lines, colors)
 
     def _add_trail(self, samples: Samples) -> None:
         """Pieces of STRIP rows that join on; each stands at its last row, so that it shows when it has been flown."""
@@ -140,18 +147,30 @@ class World:
         held = self._held or tuple(part[:1] for part in new)  # a piece needs a point before it
         self._held = tuple(part[-1:] for part in new)
         pieces = self._frame.smooth
-        line = smooth_lines(*(np.concatenate(parts) for parts in zip(held, new, strict=True)), pieces)
+        time, position, velocity = (np.concatenate(parts) for parts in zip(held, new, strict=True))
+        line = smooth_lines(time, position, velocity, pieces)
+        gaps = np.diff(time)
+        arcs = {  # where rows lie far apart on their orbit
+            k: arc(samples.run, k, position[k], float(gaps[k]), self._frame)
+            for k in np.flatnonzero(self._wide(samples.run, gaps))
+        }
         whole, rest = divmod(len(samples), STRIP)
         for start, number, length in ((0, whole, STRIP), (whole * STRIP, min(rest, 1), rest)):
             if number == 0:
                 continue
             first = start + STRIP * np.arange(number)
-            strips = line[first[:, None] * pieces + np.arange(length * pieces + 1)]
+            strips = [drawn(line, arcs, k, k + length, pieces) for k in first.tolist()]
             ends = first + length - 1
             index = samples.index_of(ends)
             colors = self._ramp(samples)[ends] if self._planet else None
             for part in ("recent",) if self._planet else ("recent", "past", "future"):
-                self._pen.strips(f"/world/trail/{part}", index, strips, colors)
+                self._pen.broken_strips(f"/world/trail/{part}", index, strips, colors)
+
+    def _wide(self, run: Run, gaps) -> np.ndarray:
+        """Whether the time since the row before is so long that a curve through both would miss the orbit. (n,)"""
+        e = run.elements
+        with np.errstate(invalid="ignore"):
+            return (e.eccentricity < 1) & (gaps > GAP * 2 * np.pi * np.sqrt(e.semi_major_axis**3 / self._frame.mu))
 
     def _ramp(self, samples: Samples, factor: float = 1.0) -> np.ndarray:
         """Colours (n,) by altitude, HIGH at the start to LOW on the ground; the root because a descent ends fast."""
@@ -166,13 +185,15 @@ class World:
         """Osculating orbits of a few rows far apart, always in sight: the whole descent at a glance."""
         if self._has_ladder and len(samples):
             color = self._ramp(samples, 0.55) if self._planet else np.full(len(samples), look.rgba(look.TRAIL_FUTURE))
+            if self._plane:
+                self._plane.add_ladder(samples, self._ramp(samples))
             self._pen.strips("/world/ladder", samples.index, orbits(samples.run, self._frame, 241), color)
 
-    def _add_sun(self, samples: Samples, sun) -> None:
-        """Day and night: the frame /world/night has its z axis away from the Sun."""
-        away = -unit(sun)
-        axes = body_axes(away, np.tile([0.0, 0.0, 1.0], (len(samples), 1)))
-        self._pen.move("/world/night", samples.index, quaternion=quaternion(axes))
+    def finish(self, last: Samples) -> None:
+        """The orbit that a transfer has reached, to be seen beside the one it aimed at."""
+        if self._setting.family == "transfers" and self._frame.sun:
+            line = orbits(last.run, self._frame, 361)[-1]
+            self._pen.lines("/world/references/reached", [line], look.dim(look.TRAIL_RECENT, 0.75), look.WIDTH["orbit"])
 
     def size(self, layout: Layout) -> None:
         """Everything that depends on how far the run reaches."""
@@ -188,11 +209,23 @@ class World:
             pen.scale("/world/craft/body/tether", layout.tether_size)
         pen.scale("/world/craft/thrust", layout.thrust_scale)
         pen.scale("/world/craft/velocity", look.VELOCITY_LENGTH * radius)
+        pen.scale("/world/craft/primer", look.PRIMER_LENGTH * radius)
         name = self._setting.craft.label or "craft"
         if self._planet:  # outwards, so that it does not lie on the planet
             pen.label("/world/rtn/name", name, look.CRAFT, (0.17 * radius, 0.0, 0.0))
         else:
             pen.label("/world/craft/name", name, look.CRAFT, (0.0, 0.0, look.LABEL_HEIGHT * radius))
+
+
+def drawn(line, arcs: dict, start: int, end: int, pieces: int) -> list[np.ndarray]:
+    """The lines of the intervals from `start` to `end`: the curve through all of them, broken where there are arcs."""
+    lines, begun = [], start
+    for k in range(start, end):
+        if k in arcs:
+            lines += [line[begun * pieces : k * pieces + 1]] if k > begun else []
+            lines.append(arcs[k])
+            begun = k + 1
+    return lines + ([line[begun * pieces : end * pieces + 1]] if end > begun else [])
 
 
 def draw_stars(pen: Pen, path: str, radius: float, count: int = 1100) -> None:
@@ -217,41 +250,6 @@ def draw_sun(pen: Pen) -> None:
     pen.label("/world/sun/name", "Sun", look.SUN, (0, 0, -2.1))
 
 
-def draw_planet(pen: Pen, path: str, name: str, dimmed: bool = False) -> None:
-    """A planet of radius 1: the Earth with its map (it does not turn: no part of a run says how), others plain."""
-    ball, uv = meshes.sphere(64, 128)
-    picture = asset("earth_2048.jpg") if name == "Earth" else None
-    if picture is None:
-        color = look.OCEAN if name == "Earth" else look.dim(look.PLANETS.get(name, look.ROCK), 0.8)
-        pen.mesh(f"{path}/ball", ball, look.dim(color) if dimmed else color, shaded=False)
-        return
-    glb = meshes.textured_glb(ball, uv, picture.read_bytes())
-    more = {"albedo_factor": [140, 140, 140, 255]} if dimmed else {}
-    pen.static(f"{path}/ball", rr.Asset3D(contents=glb, media_type="model/gltf-binary", **more))
-
-
-def draw_air(pen: Pen, path: str, halo=HALO) -> None:
-    """A halo: the far sides of nested shells. halo : pairs of radius and alpha."""
-    ball, _ = meshes.sphere()
-    for k, (radius, alpha) in enumerate(halo):
-        shell = meshes.Mesh(radius * ball.vertices, ball.faces, ball.normals)
-        pen.mesh(f"{path}/shell{k}", shell, [*look.AIR, alpha], shaded=False, side="back")
-
-
-def draw_night(pen: Pen) -> None:
-    """Shells over the night side and the umbra, +z away from the Sun, and an arrow of sunlight."""
-    for k, half_angle in enumerate(NIGHT_EDGES):
-        shell = meshes.cap(half_angle, 16, 64)
-        lifted = meshes.Mesh((1.0035 + 0.0004 * k) * shell.vertices, shell.faces, shell.normals)
-        pen.mesh(f"/world/night/shell{k}", lifted, [*look.NIGHT, NIGHT_ALPHA], shaded=False)
-    pen.mesh("/world/night/umbra", meshes.tube(0.0, 2.6, 1.0, 1.0, 96), look.UMBRA, shaded=False)
-    pen.static(
-        "/world/night/sunlight",
-        rr.Arrows3D(origins=[[0, 0, -1.36]], vectors=[[0, 0, 0.24]], colors=[look.SUN], radii=points(2.0)),
-    )
-    pen.label("/world/night/sunlight/name", "sunlight", look.SUN, (0, 0, -1.42))
-
-
 def draw_reference(pen: Pen, reference: Reference, length: float) -> None:
     """An orbit that is there from the start. A target is drawn a little large: on the trail it would tear."""
     line = np.asarray(reference.points, float) / length
@@ -265,10 +263,3 @@ def draw_reference(pen: Pen, reference: Reference, length: float) -> None:
         color = look.dim(look.APPROXIMATION)
     name = reference.name.lower().replace(" ", "_").replace("/", "_")
     pen.lines(f"/world/references/{name}", [1.006 * line if target else line], color, look.WIDTH[width])
-
-
-def asset(name: str) -> Path | None:
-    """A file that travels with sailviz, None where it is missing: inside the package, or beside it in a checkout."""
-    package = Path(sailviz.__file__).parent
-    homes = (package / "assets", package.parent / "assets")
-    return next((home / name for home in homes if (home / name).is_file()), None)

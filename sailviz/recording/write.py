@@ -175,7 +175,9 @@ class Recorder:
 
     def _open(self, block: Run) -> None:
         self._setting = setting = block.setting
-        stream = rr.RecordingStream(f"sailviz_{setting.family}", recording_id=setting.identity, send_properties=False)
+        # the viewer keeps one arrangement of views for each application: each scene needs its own
+        application = f"sailviz_{setting.family}_{setting.identity[:8]}"
+        stream = rr.RecordingStream(application, recording_id=setting.identity, send_properties=False)
         stream.set_log_time_enabled(False)
         stream.set_log_tick_enabled(False)
         self._attached = attach(stream, self._sinks)

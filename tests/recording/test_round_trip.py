@@ -95,7 +95,7 @@ def test_scene_and_provenance_travel_with_the_numbers(runs, tmp_path):
     assert recording.versions == run.setting.versions
     assert recording.accuracy == run.setting.accuracy
     assert recording.identity == recorded.identity == run.setting.identity
-    assert recording.application_id == "sailviz_displaced"
+    assert recording.application_id == f"sailviz_displaced_{run.setting.identity[:8]}"
     assert recording.complete
     assert recorded.complete
     assert recorded.rows == len(run)

@@ -1,0 +1,109 @@
+"""The curves of a run under /plots; on and off as coloured lanes under /phase.
+
+At most PLOT_ROWS rows are drawn, evenly spaced by their number in the run; the numbers of every row are in the truth.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from sailviz.recording import look, rows
+from sailviz.recording.plots import plots_of
+from sailviz.recording.samples import Frame
+from sailviz.run import Run
+
+PLOT_ROWS = 20_000
+FAR_ROWS = 1200  # where rows are far apart on their orbit: there are many curves of years, and no swing to be seen
+UNKNOWN = 0.25  # revolutions between rows over which light and shadow come and go unseen
+
+
+class Curves:
+    """Writes the plots of a run and remembers how far they reach."""
+
+    def __init__(self, pen, first: Run, frame: Frame):
+        self._pen = pen
+        most = FAR_ROWS if frame.sparse else PLOT_ROWS
+        self._picker = rows.Picker(first.setting.rows, most, first.setting.duration)
+        self.plots = plots_of(first, frame)
+        self.ranges: dict[str, tuple[float, float]] = {}
+        self._lanes = {"thrust": lambda run: run.thrust.on} | {
+            name: (lambda run, name=name: run.environment[name])
+            for name, v in first.environment.items()
+            if v.dtype == bool
+        }
+        self._state: dict[str, str] = {}
+        self._time = frame.start  # s, of the last row so far
+        self._far = np.inf if frame.sun else UNKNOWN * frame.period
+        self.changes = dict.fromkeys(self._lanes, 0)
+        dense = frame.turns > 60
+        width = look.WIDTH["dense plot" if dense else "plot"]
+        for plot in self.plots:
+            # the later curve lies on top: thinner, so that an equal one below it still shows
+            widths = [width * (1.6 if k < len(plot.names) - 1 else 1.0) for k in range(len(plot.names))]
+            style = rr.SeriesLines(
+                names=list(plot.names),
+                colors=[list(color) for color in plot.colors],
+                widths=widths,
+                aggregation_policy=rr.components.AggregationPolicy.MinMax,  # the mean would hide an oscillation
+            )
+            pen.static(plot.path, style)
+        for lane in self._lanes:
+            on, off = lane_style(lane, first.setting.craft.kind)
+            pen.static(
+                f"/phase/{lane}",
+                rr.StateConfiguration(
+                    values=["on", "off", "unknown"],
+                    labels=[on[0], off[0], "between far rows"],
+                    colors=[on[1], off[1], look.UNKNOWN],
+                ),
+            )
+
+    def add(self, run: Run) -> None:
+        """A block of a run, all rows."""
+        drawn = self._picker.pick(run)
+        picked = rows.take(run, drawn)
+        index = rows.timelines(run.setting, run.first + drawn, picked.time)
+        for plot in self.plots:
+            self._stretch(plot.path, plot.values(run))
+            if len(picked):
+                values = plot.values(picked)
+                self._pen.columns(
+                    plot.path, index, rr.Scalars.columns(scalars=np.where(np.isfinite(values), values, np.nan))
+                )
+        far = np.diff(run.time, prepend=self._time) > self._far
+        for lane, values in self._lanes.items():
+            states = np.where(np.asarray(values(run), bool), "on", "off")
+            self._add_lane(lane, run, np.where(far, "unknown", states) if lane == "sunlit" else states)
+        self._time = float(run.time[-1])
+
+    def _stretch(self, path: str, values) -> None:
+        for k in range(values.shape[1]):
+            finite = values[np.isfinite(values[:, k]), k]
+            if len(finite):
+                low, high = self.ranges.get(f"{path}:{k}", (np.inf, -np.inf))
+                self.ranges[f"{path}:{k}"] = (min(low, float(finite.min())), max(high, float(finite.max())))
+
+    def _add_lane(self, lane: str, run: Run, states) -> None:
+        """Only the changes are written."""
+        before = self._state.get(lane)
+        changed = np.flatnonzero(np.concatenate([[before or ""], states[:-1]]) != states)
+        self._state[lane] = str(states[-1])
+        if len(changed):
+            self.changes[lane] += len(changed) - (before is None)
+            index = rows.timelines(run.setting, run.first + changed, run.time[changed])
+            self._pen.columns(f"/phase/{lane}", index, rr.StateChange.columns(state=states[changed].tolist()))
+
+    def reach(self, path: str) -> tuple[float, float]:
+        """Smallest and largest value that a plot has shown."""
+        pairs = [pair for key, pair in self.ranges.items() if key.rsplit(":", 1)[0] == path]
+        return (min(low for low, _ in pairs), max(high for _, high in pairs)) if pairs else (0.0, 1.0)
+
+
+def lane_style(lane: str, kind: str) -> tuple:
+    """Word and colour of a lane's two states."""
+    if lane == "thrust" and kind == "plasma-brake":
+        lane = "brake"
+    words = lane.replace("_", " ")
+    other = {"on": (words, look.SERIES[0]), "off": (f"no {words}", look.REFERENCE)}
+    return tuple(look.LANES.get("light" if "sunlit" in lane else lane, other).values())

@@ -1,0 +1,146 @@
+"""The plane of a low orbit: the orbit of the moment, old ones as faint rings, and what lies in the plane, in altitude.
+
+/world/plane turns with the orbit: z is its normal, x towards the Sun or, without one, the ascending node. So altitudes
+of years can be compared, although the orbits themselves lie across each other. Nothing is exaggerated.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from sailviz.frames import quaternion, to_frame, unit
+from sailviz.recording import look, meshes
+from sailviz.recording.look import points
+from sailviz.recording.pen import Pen, f4
+from sailviz.recording.samples import Frame, Samples, rings
+from sailviz.recording.truth import word
+from sailviz.run import Run, Shell
+
+CIRCLE = 361  # points
+STAIRS = 1.1  # how far the labels of the rings are spread, in heights of the highest
+FAINT = 0.02  # share of the ramp below which a map is not drawn
+
+
+class OrbitPlane:
+    """Writes /world/plane."""
+
+    def __init__(self, pen: Pen, first: Run, frame: Frame, ladder: int):
+        self._pen, self._frame, self._ladder = pen, frame, ladder
+        self._day = 86400.0 if frame.duration > 3 * 86400 else 3600.0
+        circle = meshes.ring(CIRCLE)
+        # with close rows there is a trail: a line on it would tear
+        self._orbits = ("/world/orbit", "/world/plane/orbit") if frame.sparse else ("/world/plane/orbit",)
+        for path in self._orbits:
+            pen.static(path, rr.LineStrips3D.from_fields(strips=[f4(circle)], radii=points(look.WIDTH["recent"] * 0.8)))
+        pen.strip_style("/world/plane/ladder", None, look.WIDTH["ladder"])
+        pen.label_style("/world/plane/now", look.CRAFT)
+        pen.static("/world/plane/rungs", rr.Points3D.from_fields(radii=points(look.ANCHOR), show_labels=True))
+        axes = plane_axes(first)[0]
+        for shell in first.setting.shells:
+            draw_shell(pen, f"/world/plane/shells/{word(shell.name)}", shell, axes, frame.unit)
+
+    def add(self, samples: Samples, colors) -> None:
+        pen, index, run = self._pen, samples.index, samples.run
+        axes = plane_axes(run)
+        pen.move("/world/plane", index, quaternion=quaternion(axes))
+        identity = np.broadcast_to(np.eye(3), axes.shape)
+        for path in self._orbits:
+            turned = axes if path == "/world/plane/orbit" else identity
+            values = {name: f4(value) for name, value in rings(run, turned, self._frame).items()}
+            ramp = rr.LineStrips3D.columns(colors=np.asarray(colors, np.uint32))
+            pen.columns(path, index, [*rr.Transform3D.columns(**values), *ramp])
+        radius = run.elements.semi_major_axis / self._frame.unit
+        texts = [f"{altitude:.0f} km" for altitude in (radius - 1) * self._frame.unit / 1e3]
+        pen.labels("/world/plane/now", index, np.stack([radius, 0 * radius, 0 * radius], 1), texts)
+
+    def add_ladder(self, samples: Samples, colors) -> None:
+        """Orbits far apart in time, turned into one plane, every other one with its age and altitude."""
+        run = samples.run
+        placed = rings(run, plane_axes(run), self._frame)
+        lines = placed["scale"][:, None] * meshes.ring(CIRCLE)
+        lines = turned_by(placed["quaternion"], lines) + placed["translation"][:, None]
+        self._pen.strips("/world/plane/ladder", samples.index, lines, colors)
+        radius = run.elements.semi_major_axis / self._frame.unit
+        rung = np.round((run.time - self._frame.start) / self._frame.duration * self._ladder)
+        height = STAIRS * (self._frame.origin_radius - 1)
+        across = height * (1 - 2 * rung / self._ladder)
+        age, name = (run.time - self._frame.start) / self._day, "d" if self._day > 3600 else "h"
+        high = (radius - 1) * self._frame.unit / 1e3
+        texts = [f"{t:.0f} {name}: {h:.0f} km" for t, h in zip(age.tolist(), high.tolist(), strict=True)]
+        named = np.flatnonzero(rung % 2 == 0)
+        if len(named):
+            place = np.stack([np.sqrt(np.clip(radius**2 - across**2, 0, None)), across, 0 * across], 1)
+            colors = np.asarray(colors, np.uint32)[named]
+            columns = rr.Points3D.columns(positions=f4(place[named]), labels=[texts[k] for k in named], colors=colors)
+            self._pen.columns("/world/plane/rungs", samples.index_of(named), columns)
+
+
+def plane_axes(run: Run) -> np.ndarray:
+    """(n, 3, 3), columns: x towards the Sun within the plane or along the node, z the orbit's normal."""
+    normal = unit(np.cross(run.position, run.velocity))
+    hint = run.bodies.get("Sun")
+    if hint is None:
+        hint = np.cross([0.0, 0.0, 1.0], normal) + 1e-9 * run.position
+    across = np.cross(normal, hint)
+    y = unit(across)
+    return np.stack([np.cross(y, normal), y, normal], -1)
+
+
+def turned_by(quaternions, vectors) -> np.ndarray:
+    """Vectors (n, k, 3) turned by quaternions (n, 4) xyzw."""
+    axis, scalar = quaternions[:, None, :3], quaternions[:, None, 3:]
+    twice = 2 * np.cross(axis, vectors)
+    return vectors + scalar * twice + np.cross(axis, twice)
+
+
+def draw_shell(pen: Pen, path: str, shell: Shell, axes, length: float) -> None:
+    """A map as a translucent band, bright where the value is large: its logarithm, where it spans a factor of ten."""
+    start = float(np.arctan2(*to_frame(axes, np.asarray(shell.reference, float))[[1, 0]]))
+    sense = 1.0 if to_frame(axes, np.asarray(shell.normal, float))[2] >= 0 else -1.0
+    angle, value = np.asarray(shell.angle, float), np.asarray(shell.value, float)
+    if 2 * np.pi - (angle[-1] - angle[0]) > 1e-6:  # close the circle
+        angle, value = np.append(angle, angle[0] + 2 * np.pi), np.concatenate([value, value[:1]])
+    direction = start + sense * angle
+    radius = 1 + np.asarray(shell.altitude, float) / length
+    corners = np.stack([np.cos(direction)[:, None] * radius, np.sin(direction)[:, None] * radius, 0 * value], -1)
+    share = shares(value)
+    faces = meshes.grid_faces(len(angle) - 1, len(radius) - 1)
+    faces = faces[share.ravel()[faces].max(1) > FAINT]
+    stops = np.array(look.PLASMA, float)
+    where = np.linspace(0, 1, len(stops))
+    colors = np.stack([np.interp(share.ravel(), where, stops[:, k]) for k in range(3)], 1).astype(np.uint8)
+    pen.static(
+        path,
+        rr.Mesh3D(
+            vertex_positions=f4(corners.reshape(-1, 3)),
+            triangle_indices=np.ascontiguousarray(faces, np.uint32),
+            vertex_colors=colors,
+            albedo_factor=[255, 255, 255, look.PLASMA_ALPHA],
+        ),
+    )
+
+
+def shares(value) -> np.ndarray:
+    """Values as 0 to 1, on a logarithmic scale where they span more than a factor of ten, at most three decades."""
+    high = np.nanmax(value)
+    low = np.nanmin(value)
+    if low >= 0 and high > 10 * low:
+        decades = min(3.0, np.log10(high / low)) if low > 0 else 3.0
+        return np.clip(np.log10(np.clip(np.nan_to_num(value) / high, 1e-30, None)) / decades + 1, 0, 1)
+    return np.nan_to_num((value - low) / (high - low)) if high > low else np.ones_like(value)
+
+
+def notes(run: Run, frame: Frame, ladder: int) -> list[str]:
+    """What the colours of orbits and maps mean, for the description."""
+    start = (frame.origin_radius - 1) * frame.unit / 1e3
+    day, name = (86400.0, "d") if frame.duration > 3 * 86400 else (3600.0, "h")
+    every = frame.duration / ladder / day
+    lines = [
+        f"orbit: **blue** at {start:.0f} km, pale at {0.75 * start:.0f} km, **orange** at the ground; "
+        f"a faint ring every {every:.2g} {name}"
+    ]
+    for shell in run.setting.shells:
+        low, high = float(np.nanmin(shell.value)), float(np.nanmax(shell.value))
+        lines.append(f"**violet** band: {shell.name}, {low:.0e} to {high:.0e} {shell.unit}, as round the first orbit")
+    return lines

@@ -178,11 +178,12 @@ def spiral_run(rows=300, years=1.5, pitch=0.6155):
     )
 
 
-def descent_run(rows=300, days=52.0, high=700e3, low=500e3, revolutions=None):
+def descent_run(rows=300, days=52.0, high=700e3, low=500e3, revolutions=None, time=None):
     """A plasma brake from one circular orbit to a lower one, nearly circular on the way, the tether hanging from the
-    satellite.
+    satellite; at times of one's own, if given.
     """
-    time = np.linspace(0, days * DAY, rows)
+    time = np.linspace(0, days * DAY, rows) if time is None else np.asarray(time, float)
+    rows, days = len(time), time[-1] / DAY
     a = RADIUS_EARTH + high - (high - low) * (time / time[-1]) ** 1.3
     mean_motion = np.sqrt(MU_EARTH / a**3)
     phase = np.concatenate([[0.0], np.cumsum(0.5 * (mean_motion[1:] + mean_motion[:-1]) * np.diff(time))])
@@ -229,7 +230,7 @@ def in_blocks(run, size):
 FAMILIES = {"displaced": displaced_run, "spirals": spiral_run, "deorbit": descent_run}
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def runs():
     """Makers of runs, and the cutting of a run into blocks."""
     return SimpleNamespace(displaced=displaced_run, spiral=spiral_run, descent=descent_run, in_blocks=in_blocks)

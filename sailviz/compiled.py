@@ -14,7 +14,7 @@ _OPTIONS = {"error_model": "numpy", "fastmath": {"contract", "nsz"}, "nogil": Tr
 
 
 _PACKAGE = Path(__file__).parent
-_WITH_COMPILED_CODE = ("compiled.py", "constants.py", "steering.py", "optimal_steering.py", "*/[!_]*.py")
+_WITH_COMPILED_CODE = ("compiled.py", "constants.py", "steering.py", "optimal_steering.py", "primers.py", "*/[!_]*.py")
 _SOURCES = tuple(
     (path.name, path.stat().st_mtime_ns, path.stat().st_size)
     for pattern in _WITH_COMPILED_CODE

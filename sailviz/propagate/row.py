@@ -24,7 +24,7 @@ PLASMA_TABLE, AIR_TABLE = 52, 53  # where the tables begin in the row
 BRAKE = 54  # ten numbers of the plasma brake, places below
 STEER_AS = 64  # the sail for which a primer law steers: its kind, then up to four numbers as from DEVICE on
 PRIMER_KIND = 69  # which law of steering.py makes the primer
-LOW_ORBIT, PRIMER_LAW = 70, 71  # addresses of plugs, 0 for none: the forces of low_orbit.py, the laws of primers.py
+LOW_ORBIT, PRIMER_LAW = 70, 71  # addresses of plugs, 0 for none: the forces of low_orbit.py, primer_laws.py
 TABLE = 80
 
 NO_AIR, EXPONENTIAL_AIR, TABLED_AIR = range(3)

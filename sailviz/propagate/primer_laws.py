@@ -1,0 +1,62 @@
+"""Steering towards a primer: the thrust that does the most along a wanted vector, at the craft's present place.
+
+A plug: compiled when the first scene needs it. The primer comes from a table (a solved minimum-time flight), from the
+orbital element that is to change fastest, or from the distance to a target orbit.
+"""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+
+from sailviz import steering as law
+from sailviz.compiled import called, compiled
+from sailviz.optimal_steering import towards_primer
+from sailviz.primers import locally_optimal_primer, lyapunov_primer
+from sailviz.propagate import row as at
+from sailviz.propagate.plugs import plug_address
+
+
+@called
+def primer(t, x, y, z, vx, vy, vz, p):
+    """The vector along which the law wants the most thrust, of any length; inertial."""
+    kind = p[at.PRIMER_KIND]
+    if kind == law.LOCAL:
+        lx, ly, lz = locally_optimal_primer(int(p[at.STEERING]), x, y, z, vx, vy, vz, p[at.MU])
+        sense = p[at.STEERING + 1]
+        return sense * lx, sense * ly, sense * lz
+    if kind == law.LYAPUNOV:
+        return lyapunov_primer(x, y, z, vx, vy, vz, p[at.MU], p, at.TABLE)
+    return law.table_row(t, p, at.TABLE, int(p[at.ROWS]), p[at.INTERPOLATION])
+
+
+@called
+def normal(t, x, y, z, vx, vy, vz, p):
+    """(unit sail normal, 1.0 or 0.0 for thrust on or off) of the law."""
+    lx, ly, lz = primer(t, x, y, z, vx, vy, vz, p)
+    inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
+    sail = int(p[at.STEER_AS])
+    return towards_primer(sail, p, at.STEER_AS + 1, x * inverse, y * inverse, z * inverse, lx, ly, lz)
+
+
+def _normal(t, state, row, size, factor, out):
+    """Plug: the normal and whether to thrust."""
+    y, p, n = numba.carray(state, (7,)), numba.carray(row, (size,)), numba.carray(out, (4,))
+    n[0], n[1], n[2], n[3] = normal(t, y[0], y[1], y[2], y[3], y[4], y[5], p)
+
+
+def normal_plug() -> int:
+    """Address of the primer laws, for `dynamics.model`."""
+    return plug_address(_normal)
+
+
+@compiled
+def observe_primer(time, states, p):
+    """Unit primer vectors (n, 3), inertial, at times (n,) s and states (7, n)."""
+    out = np.empty((len(time), 3))
+    for i in range(len(time)):
+        s = states[:, i]
+        lx, ly, lz = primer(time[i], s[0], s[1], s[2], s[3], s[4], s[5], p)
+        size = np.sqrt(lx * lx + ly * ly + lz * lz)
+        out[i, 0], out[i, 1], out[i, 2] = lx / size, ly / size, lz / size
+    return out

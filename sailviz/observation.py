@@ -6,11 +6,13 @@ import numpy as np
 
 from sailviz import elements as orbital
 from sailviz import ephemeris
+from sailviz import steering as law
 from sailviz.constants import ATOMIC_MASS, J2_EARTH, RADIUS_EARTH
 from sailviz.plan import Plan, epoch_of
 from sailviz.plan_low_orbit import watches_shadow
 from sailviz.propagate import dynamics
 from sailviz.propagate import low_orbit as seen
+from sailviz.propagate.primer_laws import observe_primer
 from sailviz.propulsion.plasma_brake import validity
 
 
@@ -19,6 +21,8 @@ def observe(p: Plan, time, states, factor):
     states (7, n), factor (n,) the thrust factor of each row."""
     normal, acceleration, throttle = dynamics.observe(time, states, factor, p.model)
     columns = {}
+    if p.model.steering in (law.PRIMER, law.LOCAL, law.LYAPUNOV):
+        columns["primer_direction"] = observe_primer(time, states, p.model.parameters)
     if p.body.name == "Earth":
         values = seen.observe_low_orbit(time, states, factor, p.model.parameters)
         columns = low_orbit_columns(p, time, states, values)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sailviz import elements as orbital
-from sailviz import ephemeris, frames
+from sailviz import ephemeris, frames, primers
 from sailviz import steering as law
 from sailviz.constants import (
     AU,
@@ -34,6 +34,7 @@ from sailviz.propagate import dynamics
 from sailviz.propagate import events as happening
 from sailviz.propagate.plugs import user_address
 from sailviz.propulsion import electric_sail
+from sailviz.propulsion.devices import sail
 from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.run import Body
 from sailviz.scene import Scene
@@ -100,6 +101,7 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
         third_body=third_body(scene),
         user_steering=user_steering,
         user_force=user_force,
+        **_primer_law(scene, law_id, device, device_parameters),
         **low_orbit_parts(scene, body, epoch_of(scene)),
     )
     return Plan(
@@ -336,11 +338,36 @@ def _steering(scene, design):
         table = law.table(steering.time, steering.pitch, steering.clock, steering.throttle, steering.interpolation)
         kind = law.TABLE_ORBITAL if steering.frame == "orbital" else law.TABLE_MERIDIAN
         return kind, (), table, law.INTERPOLATIONS[steering.interpolation]
+    if steering.kind == "locally-optimal":
+        return law.LOCAL, (primers.GOALS[steering.goal], 1.0 if steering.sense == "increase" else -1.0), *plain
+    if steering.kind == "lyapunov":
+        return law.LYAPUNOV, (), _lyapunov_row(steering), law.LINEAR
     if steering.kind == "inertial":
         return law.INERTIAL, tuple(frames.unit(steering.direction)), *plain
     if steering.kind in ("orbital", "meridian"):
         return law.LAWS[steering.kind], law.direction_parameters(steering.pitch, steering.clock), *plain
     return law.LAWS[steering.kind], (), *plain
+
+
+def _lyapunov_row(steering):
+    """Targets, weights and scales of the law, as `primers.lyapunov_primer` reads them."""
+    a, e = steering.semi_major_axis, steering.eccentricity
+    longitude, tangent = steering.raan + steering.argument, np.tan(steering.inclination / 2)
+    p = a * (1 - e * e)
+    target = (p, e * np.cos(longitude), e * np.sin(longitude))
+    target += (tangent * np.cos(steering.raan), tangent * np.sin(steering.raan))
+    return np.array([*target, *steering.weights, p, 1.0, 1.0, 1.0, 1.0])
+
+
+def _primer_law(scene, law_id, device, device_parameters):
+    """Keywords of `dynamics.model` for a law that follows a primer."""
+    if law_id not in (law.PRIMER, law.LOCAL, law.LYAPUNOV):
+        return {}
+    from sailviz.propagate.primer_laws import normal_plug
+
+    other = scene.steering.reckons_with
+    kind, parameters = (device, device_parameters) if other is None else sail(other, 1.0)
+    return {"steer_as": (kind, *parameters), "primer_kind": law_id, "primer_law": normal_plug()}
 
 
 def third_body(scene):

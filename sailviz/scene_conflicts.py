@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from sailviz.constants import RADIUS_EARTH
 from sailviz.scene_faults import nearest
-from sailviz.scene_sections import HELD_STARTS
+from sailviz.scene_sections import HELD_STARTS, PRIMER_LAWS
 
 if TYPE_CHECKING:
     from sailviz.scene import Scene
@@ -29,6 +29,10 @@ def conflicts(scene: Scene) -> list[tuple[str, str]]:
         found.append(("steering.kind", f"a thruster needs a direction: {words}"))
     if sail and law in ("circumferential", "tangential", "vertical"):
         found.append(("steering.kind", f'"{law}" is a thruster\'s law; a sail is steered by pitch and clock angle'))
+    if law in PRIMER_LAWS and not sail:
+        found.append(("steering.kind", f'"{law}" steers a solar sail or an electric sail'))
+    if law == "optimal" and len(scene.steering.costates) == 3 and getattr(start, "inclination", 0.0):
+        found.append(("steering.costates", "three costates belong to a planar flight: a start without inclination"))
     designed = getattr(device, "characteristic_acceleration", None) == "as designed"
     if start.kind not in HELD_STARTS:
         needs = f'"as designed" needs a start.kind that is held: {", ".join(HELD_STARTS)}'

@@ -396,9 +396,67 @@ class TableSteering(Section):
         return self
 
 
+SAIL_LAW = Literal[
+    "ideal", "eta-perfect", "jpl-1978", "jpl-2015", "electric-sail", "electric-sail-original",
+    "electric-sail-updated", "electric-sail-polynomial",
+]  # fmt: skip
+
+
+class PrimerSteering(Section):
+    """What laws have in common that make the most of the thrust along a primer: the sail they reckon with, the
+    device itself unless another is named."""
+
+    reckons_with: SAIL_LAW | None = None
+
+
+class OptimalSteering(PrimerSteering):
+    """A minimum-time flight from its initial costates, canonical (mu = 1 au = 1, H = +1): three of a planar flight,
+    for the radius, the radial and the transverse speed, or six, for position and velocity."""
+
+    kind: Literal["optimal"]
+    costates: Annotated[list[float], Field(min_length=3, max_length=6)]
+
+    @model_validator(mode="after")
+    def _count(self):
+        if len(self.costates) not in (3, 6):
+            raise _wrong("costates are three numbers of a planar flight or six of any other")
+        if not any(self.costates[-len(self.costates) // 2 :]):
+            raise _wrong("the costates of velocity are all zero: they point the thrust")
+        return self
+
+
+class LocalSteering(PrimerSteering):
+    """Whatever changes one orbital element fastest at every moment."""
+
+    kind: Literal["locally-optimal"]
+    goal: Literal["energy", "semi-major-axis", "eccentricity", "inclination", "raan", "argument"]
+    sense: Literal["increase", "decrease"] = "increase"
+
+
+class LyapunovSteering(PrimerSteering):
+    """Down the distance to a target orbit, a weighted sum of squares of the equinoctial elements' misses."""
+
+    kind: Literal["lyapunov"]
+    semi_major_axis: Annotated[Length, POSITIVE]
+    eccentricity: Annotated[float, Field(ge=0, lt=1)] = 0.0
+    inclination: Annotated[Angle, Field(ge=0, lt=3.14)] = 0.0
+    raan: Angle = 0.0
+    argument: Angle = 0.0
+    weights: Annotated[list[Annotated[float, Field(ge=0)]], Field(min_length=5, max_length=5)] = [1, 1, 1, 1, 1]
+
+
 Steering = Annotated[
-    PlainSteering | FrameSteering | InertialSteering | TableSteering | SpinningSteering, Field(discriminator="kind")
+    PlainSteering
+    | FrameSteering
+    | InertialSteering
+    | TableSteering
+    | SpinningSteering
+    | OptimalSteering
+    | LocalSteering
+    | LyapunovSteering,
+    Field(discriminator="kind"),
 ]
+PRIMER_LAWS = ("optimal", "locally-optimal", "lyapunov")
 
 
 # ---------------------------------------------------------------- what surrounds it

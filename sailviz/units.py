@@ -19,7 +19,6 @@ UNITS: dict[str, dict[str, float]] = {
     "area": {"m2": 1.0, "km2": 1e6},
     "voltage": {"V": 1.0, "kV": 1e3},
     "current": {"A": 1.0, "mA": 1e-3},
-    "power": {"W": 1.0, "mW": 1e-3},
     "pressure": {"Pa": 1.0, "nPa": 1e-9},
     "power": {"W": 1.0, "mW": 1e-3, "kW": 1e3},
     "force": {"N": 1.0, "mN": 1e-3, "uN": 1e-6},

@@ -31,6 +31,7 @@ from sailviz.propagate.row import (
     MU,
     PLASMA,
     PLASMA_TABLE,
+    PRIMER_KIND,
     PRIMER_LAW,
     ROTATION,
     ROWS,
@@ -87,6 +88,7 @@ def model(
     brake=(),
     low_orbit=0,
     primer_law=0,
+    primer_kind=0,
     user_steering=0,
     user_force=0,
 ) -> Model:
@@ -100,7 +102,8 @@ def model(
     for start, values in parts:
         row[start : start + len(values)] = values
     row[USER_STEERING], row[USER_FORCE], row[INTERPOLATION] = user_steering, user_force, interpolation
-    row[SHADOW], row[HEIGHT], row[LOW_ORBIT], row[PRIMER_LAW] = shadow, height, low_orbit, primer_law
+    row[SHADOW], row[HEIGHT], row[LOW_ORBIT] = shadow, height, low_orbit
+    row[PRIMER_LAW], row[PRIMER_KIND] = primer_law, primer_kind
     if table is not None:
         row[ROWS] = len(table)
         row = np.concatenate([row, np.asarray(table, dtype=float).ravel()])

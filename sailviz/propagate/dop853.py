@@ -11,88 +11,64 @@ same to the last bit.
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from sailviz.compiled import compiled, inlined
 from sailviz.propagate import dop853_coefficients as c
 from sailviz.propagate.dynamics import MU, SIZE, SURFACE_RADIUS, Model, derivative
-from sailviz.propagate.events import APSIS, END_OF_USE, RADIUS, STOP, Watch, measure
+from sailviz.propagate.events import Watch, measure
+from sailviz.propagate.integration import (
+    CLOCK,
+    DENSE,
+    DENSE_START,
+    DENSE_STEP,
+    EVENT_SAMPLES,
+    EVENTS,
+    IN_USE,
+    INTERVAL,
+    NEW,
+    REJECTED,
+    ROW,
+    STARTED,
+    STATUS,
+    STEP,
+    STEPS,
+    TIME,
+    Integration,
+    W,
+    Y,
+    fill,
+    happenings,
+    surface_met,
+)
+from sailviz.propagate.integration import DONE as DONE
+from sailviz.propagate.integration import EVENTS_FULL as EVENTS_FULL
+from sailviz.propagate.integration import MOST_EVENTS as MOST_EVENTS
+from sailviz.propagate.integration import NOT_FINITE as NOT_FINITE
+from sailviz.propagate.integration import STOPPED as STOPPED
+from sailviz.propagate.integration import SURFACE as SURFACE
+from sailviz.propagate.integration import UNDERFLOW as UNDERFLOW
+from sailviz.propagate.integration import drain_events as drain_events
+from sailviz.propagate.integration import in_use as in_use
+from sailviz.propagate.integration import rows_done as rows_done
+from sailviz.propagate.integration import state as state
+from sailviz.propagate.integration import statistics as statistics
+from sailviz.propagate.integration import stopped_by as stopped_by
+from sailviz.propagate.integration import time as time
 
 SAFETY, SHRINK_MOST, GROW_MOST = 0.9, 0.333, 6.0  # of the step-size controller: Hairer's values
-EVENT_SAMPLES = 4  # per step, so that two crossings inside one step are seen
 VECTOR = 16  # rows that one turn of the compiled output loop fills
-MOST_EVENTS = 4096  # recorded between two calls, and then those of one more step
-
-# status of `advance`
-DONE, STOPPED, EVENTS_FULL, UNDERFLOW, NOT_FINITE, SURFACE = range(6)
-
-# rows of Integration.work after the sixteen stages; one array, so that the optimiser knows that they do not overlap
-Y, W, NEW = 16, 17, 18  # state at the start of the step, a state to evaluate, state at its end
-DENSE, CLOCK = 19, 27  # eight rows of monomial coefficients over the last step; a row of times
-
-# places in the CLOCK row and in Integration.count
-_T, _H, _DENSE_START, _DENSE_STEP = 0, 1, 2, 3
-_ROW, _INTERVAL, _IN_USE, _STARTED, _STEPS, _REJECTED, _EVENTS, _STATUS, _STOPPED_BY = 0, 1, 2, 3, 4, 5, 6, 7, 8
-
-
-class Integration(NamedTuple):
-    """Everything that an integration remembers between calls."""
-
-    work: np.ndarray  # (28, SIZE) sixteen stages, the first the derivative at the state; then the rows named above
-    count: np.ndarray  # (9,) int64, see the places above
-    sign: np.ndarray  # (events,) event functions at the state
-    event: np.ndarray  # (MOST_EVENTS and those of one step, 9) index in the watch, time s, state
 
 
 def start(t, position, velocity, mass, events=0) -> Integration:
     """A fresh Integration at time s, position m, velocity m/s, mass kg, with room for a number of events."""
     work = np.zeros((28, SIZE))
     work[Y] = (*position, *velocity, mass)
-    work[CLOCK, _T] = work[CLOCK, _DENSE_START] = t
+    work[CLOCK, TIME] = work[CLOCK, DENSE_START] = t
     count = np.zeros(9, dtype=np.int64)
-    count[_IN_USE] = 1
+    count[IN_USE] = 1
     of_one_step = EVENT_SAMPLES * events + 1  # each sample may see each event once, and then there is the surface
     return Integration(work, count, np.zeros(events), np.zeros((MOST_EVENTS * (events > 0) + of_one_step, 9)))
-
-
-def time(s: Integration) -> float:
-    """Time that the integration has reached, s."""
-    return float(s.work[CLOCK, _T])
-
-
-def state(s: Integration) -> np.ndarray:
-    """State (7,) that it has reached: position m, velocity m/s, mass kg."""
-    return s.work[Y].copy()
-
-
-def drain_events(s: Integration) -> list[tuple[int, float, np.ndarray]]:
-    """(index in the watch, time s, state (7,)) of every event since the last call; makes room for more. Index -1 is
-    contact with the surface."""
-    n = int(s.count[_EVENTS])
-    s.count[_EVENTS] = 0
-    return [(int(row[0]), float(row[1]), row[2:].copy()) for row in s.event[:n]]
-
-
-def in_use(s: Integration) -> bool:
-    """False once an END_OF_USE event has switched the device off for good."""
-    return bool(s.count[_IN_USE])
-
-
-def stopped_by(s: Integration) -> int:
-    """Index in the watch of the event that stopped the run, after STOPPED."""
-    return int(s.count[_STOPPED_BY])
-
-
-def rows_done(s: Integration) -> int:
-    """Rows of the current block that are filled."""
-    return int(s.count[_ROW])
-
-
-def statistics(s: Integration) -> tuple[int, int]:
-    """Accepted and rejected steps so far."""
-    return int(s.count[_STEPS]), int(s.count[_REJECTED])
 
 
 @inlined
@@ -122,7 +98,7 @@ def _error(k, h, mu):
 
 
 @inlined
-def _stages(t, h, end, factor, model, k):
+def stages(t, h, end, factor, model, k):
     """The stages 2 to 12 of a step, the new state, and stage 13, the derivative there: k[i - 1] = f(t + C_i h, k[W]).
     end is the time of the last two, t + h or a moment before it.
 
@@ -184,7 +160,7 @@ def _stages(t, h, end, factor, model, k):
 
 
 @inlined
-def _interpolant(t, h, factor, model, k, m):
+def interpolant(t, h, factor, model, k, m):
     """Monomial coefficients m (8, SIZE) of the dense output over the step: y(t + x h) = sum m[i] x^i."""
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (
@@ -240,101 +216,44 @@ def _interpolant(t, h, factor, model, k, m):
 
 
 @inlined
-def _fill(m, t0, h, t_out, out, first, last):
-    """Rows first..last of out (components, n) at the times t_out (n,) from the polynomial of the step [t0, t0 + h]."""
-    inverse = 1.0 / h
-    times = t_out[first:last]
-    for j in range(out.shape[0]):
-        m0, m1, m2, m3 = m[0, j], m[1, j], m[2, j], m[3, j]
-        m4, m5, m6, m7 = m[4, j], m[5, j], m[6, j], m[7, j]
-        row = out[j][first:last]  # a slice of one row: its stride is known, the loop becomes vector code
-        for i in range(len(times)):
-            x = (times[i] - t0) * inverse
-            row[i] = m0 + x * (m1 + x * (m2 + x * (m3 + x * (m4 + x * (m5 + x * (m6 + x * m7))))))
-
-
-@inlined
-def _evaluate(m, x, w):
-    """w (SIZE,) = the polynomial at x in [0, 1]."""
-    for j in range(SIZE):
-        p = m[7, j]
-        for i in range(6, -1, -1):
-            p = p * x + m[i, j]
-        w[j] = p
-
-
-@inlined
-def _root(m, kind, level, mu, low, high, g_low, w):
-    """x in [low, high] where the event function changes sign: bisection to the last bit, w = the state there."""
-    for _ in range(64):
-        middle = 0.5 * (low + high)
-        if middle <= low or middle >= high:
+def attempt(t, limit, wish, largest_step, t_end, tolerance, factor, model, k, count, mu):
+    """One accepted step from t towards limit, or count[STATUS] saying why there is none. Returns (h, whether it lands
+    on the limit, whether others were rejected before, the length last wished for, its error over the tolerance)."""
+    rejected, error = False, 0.0
+    while True:
+        h = min(wish, largest_step)
+        landing = t + 1.01 * h >= limit
+        if landing:
+            h = limit - t
+        if h <= 4.0e-16 * max(abs(t), abs(t_end)) and not landing:
+            count[STATUS] = UNDERFLOW
             break
-        _evaluate(m, middle, w)
-        g = measure(kind, level, w, mu)
-        if (g < 0.0) == (g_low < 0.0):
-            low = middle
+        # a step that lands on a kink sees the steering table as it is before the kink
+        stages(t, h, np.nextafter(limit, t) if landing else t + h, factor, model, k)
+        error = _error(k, h, mu) / tolerance
+        if error < 1.0:
+            break
+        if not np.isfinite(error):
+            # leave a singular spot slowly; give up when even a tiny step is not finite
+            wish = 0.1 * h
+            if wish <= 4.0e-14 * max(abs(t), abs(t_end)):
+                count[STATUS] = NOT_FINITE
+                break
         else:
-            high = middle
-    _evaluate(m, high, w)
-    return high
+            wish = h * max(SHRINK_MOST, SAFETY * error**-0.125)
+        rejected = True
+        count[REJECTED] += 1
+    return h, landing, rejected, wish, error
 
 
 @inlined
-def _note(s, index, time, w):
-    n = s.count[_EVENTS]
-    s.event[n, 0] = index
-    s.event[n, 1] = time
-    for j in range(7):
-        s.event[n, 2 + j] = w[j]
-    s.count[_EVENTS] = n + 1
-
-
-@compiled
-def _find_events(s, watch, t0, h, x_end, mu, w):
-    """Record every event of the step [t0, t0 + h] up to x_end in order of time. Returns x of the first that stops
-    the run or ends the use of the device, else 2, and its index."""
-    dense = s.work[DENSE:CLOCK]
-    before = s.count[_EVENTS]
-    low = 0.0
-    for piece in range(1, EVENT_SAMPLES + 1):
-        high = x_end * piece / EVENT_SAMPLES
-        stop_x, stop_index = 2.0, -1
-        first = s.count[_EVENTS]
-        for e in range(len(watch.kind)):
-            kind, level = watch.kind[e], watch.level[e]
-            _evaluate(dense, high, w)
-            g_low, g = s.sign[e], measure(kind, level, w, mu)
-            s.sign[e] = g
-            if watch.action[e] == END_OF_USE and s.count[_IN_USE] == 0:
-                continue
-            if not (
-                (g_low < 0.0 and g >= 0.0 and watch.sense[e] >= 0) or (g_low > 0.0 and g <= 0.0 and watch.sense[e] <= 0)
-            ):
-                continue
-            x = _root(dense, kind, level, mu, low, high, g_low, w)
-            at = s.count[_EVENTS]
-            _note(s, e, t0 + x * h, w)
-            while at > first and s.event[at - 1, 1] > s.event[at, 1]:  # keep them in order of time
-                for j in range(9):
-                    s.event[at - 1, j], s.event[at, j] = s.event[at, j], s.event[at - 1, j]
-                at -= 1
-            if watch.action[e] != 0 and x < stop_x:
-                stop_x, stop_index = x, e
-        if stop_index >= 0:
-            n = s.count[_EVENTS]
-            while (
-                n > before and s.event[n - 1, 1] > t0 + stop_x * h
-            ):  # what would have come after the stop did not happen
-                n -= 1
-            s.count[_EVENTS] = n
-            _evaluate(dense, stop_x, w)
-            for e in range(len(watch.kind)):
-                s.sign[e] = measure(watch.kind[e], watch.level[e], w, mu)
-            s.sign[stop_index] = 0.0
-            return stop_x, stop_index
-        low = high
-    return 2.0, -1
+def next_step(h, landing, rejected, wish, error):
+    """Length to try after an accepted step."""
+    grow = GROW_MOST if error == 0.0 else min(GROW_MOST, max(SHRINK_MOST, SAFETY * error**-0.125))
+    if rejected:
+        grow = min(grow, 1.0)
+    # a step cut short by a landing must not shorten the next one
+    return max(h * grow, wish) if landing and not rejected else h * grow
 
 
 def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step) -> int:
@@ -366,26 +285,26 @@ def advance_compiled(
     k, m, clock = work, work[DENSE:CLOCK], work[CLOCK]
     y, w, new = k[Y], k[W], k[NEW]
     watched = len(watch.kind)
-    if count[_STARTED] == 0:
-        count[_STARTED] = 1
+    if count[STARTED] == 0:
+        count[STARTED] = 1
         r = np.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
-        while count[_INTERVAL] + 1 < len(breaks) and breaks[count[_INTERVAL] + 1] <= clock[_T]:
-            count[_INTERVAL] += 1
-        derivative(clock[_T], y, factors[count[_INTERVAL]], model, k[0])
+        while count[INTERVAL] + 1 < len(breaks) and breaks[count[INTERVAL] + 1] <= clock[TIME]:
+            count[INTERVAL] += 1
+        derivative(clock[TIME], y, factors[count[INTERVAL]], model, k[0])
         speed = np.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5])
         dynamical = r / max(speed, np.sqrt(mu / r))
-        clock[_H] = min(3.0 * tolerance**0.125 * dynamical, largest_step)
+        clock[STEP] = min(3.0 * tolerance**0.125 * dynamical, largest_step)
         for e in range(watched):
             s.sign[e] = measure(watch.kind[e], watch.level[e], y, mu)
     row = 0
-    if count[_STATUS] == EVENTS_FULL:
-        row = count[_ROW]
-    ended = count[_STATUS] == STOPPED or count[_STATUS] == SURFACE  # in a step of which rows are still to be filled
+    if count[STATUS] == EVENTS_FULL:
+        row = count[ROW]
+    ended = count[STATUS] == STOPPED or count[STATUS] == SURFACE  # in a step of which rows are still to be filled
     if not ended:
-        count[_STATUS] = DONE
-    t = clock[_T]
-    interval = count[_INTERVAL]
-    factor = factors[interval] * count[_IN_USE]
+        count[STATUS] = DONE
+    t = clock[TIME]
+    interval = count[INTERVAL]
+    factor = factors[interval] * count[IN_USE]
     while row < n:
         # rows inside the last step, or exactly at its end
         if t_out[row] < t:
@@ -394,7 +313,7 @@ def advance_compiled(
                 last += 1
             # whole vectors: what is filled beyond the step is overwritten by the next
             whole = min(n, row + (last - row + VECTOR - 1) // VECTOR * VECTOR)
-            _fill(m, clock[_DENSE_START], clock[_DENSE_STEP], t_out, out, row, whole)
+            fill(m, clock[DENSE_START], clock[DENSE_STEP], t_out, out, row, whole)
             row = last
             continue
         if t_out[row] == t:
@@ -404,79 +323,36 @@ def advance_compiled(
             continue
         if ended:
             break
-        if count[_EVENTS] > MOST_EVENTS:
-            count[_STATUS] = EVENTS_FULL
+        if count[EVENTS] > MOST_EVENTS:
+            count[STATUS] = EVENTS_FULL
             break
         # one accepted step, landing on the next kink of the thrust or on the end
         limit = t_end
         if interval + 1 < len(breaks) and breaks[interval + 1] < limit:
             limit = breaks[interval + 1]
-        wish = clock[_H]
-        rejected = False
-        while True:
-            h = min(wish, largest_step)
-            landing = t + 1.01 * h >= limit
-            if landing:
-                h = limit - t
-            if h <= 4.0e-16 * max(abs(t), abs(t_end)) and not landing:
-                count[_STATUS] = UNDERFLOW
-                break
-            # a step that lands on a kink sees the steering table as it is before the kink
-            _stages(t, h, np.nextafter(limit, t) if landing else t + h, factor, model, k)
-            error = _error(k, h, mu) / tolerance
-            if error < 1.0:
-                break
-            if not np.isfinite(error):
-                # leave a singular spot slowly; give up when even a tiny step is not finite
-                wish = 0.1 * h
-                if wish <= 4.0e-14 * max(abs(t), abs(t_end)):
-                    count[_STATUS] = NOT_FINITE
-                    break
-            else:
-                wish = h * max(SHRINK_MOST, SAFETY * error**-0.125)
-            rejected = True
-            count[_REJECTED] += 1
-        if count[_STATUS] != DONE:
+        h, landing, rejected, wish, error = attempt(
+            t, limit, clock[STEP], largest_step, t_end, tolerance, factor, model, k, count, mu
+        )
+        if count[STATUS] != DONE:
             break
-        grow = GROW_MOST if error == 0.0 else min(GROW_MOST, max(SHRINK_MOST, SAFETY * error**-0.125))
-        if rejected:
-            grow = min(grow, 1.0)
-        # a step cut short by a landing must not shorten the next one
-        clock[_H] = max(h * grow, wish) if landing and not rejected else h * grow
-        count[_STEPS] += 1
+        clock[STEP] = next_step(h, landing, rejected, wish, error)
+        count[STEPS] += 1
         t0 = t
         t = limit if landing else t + h
-        # below the surface at its end, or through a periapsis that may lie below it
-        touched = new[0] * new[0] + new[1] * new[1] + new[2] * new[2] < surface * surface
-        passed = surface > 0.0 and measure(APSIS, 0.0, y, mu) < 0.0 and measure(APSIS, 0.0, new, mu) > 0.0
-        clock[_DENSE_START], clock[_DENSE_STEP] = t0, h
+        touched, passed = surface_met(y, new, mu, surface)
+        clock[DENSE_START], clock[DENSE_STEP] = t0, h
         if watched > 0 or touched or passed or t_out[row] < t:
-            _interpolant(t0, h, factor, model, k, m)
-        stop_x, stop_index, contact = 2.0, -1, 2.0
-        lowest = 1.0
-        if passed:
-            lowest = _root(m, APSIS, 0.0, mu, 0.0, 1.0, -1.0, w)
-            touched = measure(RADIUS, surface, w, mu) < 0.0
-        if touched:
-            contact = _root(m, RADIUS, surface, mu, 0.0, lowest, 1.0, w)
-        if watched > 0:
-            stop_x, stop_index = _find_events(s, watch, t0, h, min(contact, 1.0), mu, w)
-        if contact < min(stop_x, 2.0):
-            _evaluate(m, contact, w)
-            _note(s, -1, t0 + contact * h, w)
-            stop_x, stop_index, count[_STATUS] = contact, -1, SURFACE
-        if stop_x < 2.0:  # the run goes on, or ends, at the event
+            interpolant(t0, h, factor, model, k, m)
+        stop_x = 2.0
+        if watched > 0 or touched or passed:
+            stop_x = happenings(s, watch, t0, h, touched, passed, EVENT_SAMPLES, mu, surface, new, w)
+        if stop_x < 2.0:
             t = t0 + stop_x * h
-            _evaluate(m, stop_x, new)
-            if stop_index >= 0 and watch.action[stop_index] == STOP:
-                count[_STATUS], count[_STOPPED_BY] = STOPPED, stop_index
-            elif stop_index >= 0:
-                count[_IN_USE] = 0
         new_factor = factor
         if t == limit and limit < t_end and interval + 1 < len(breaks):
             interval += 1
             new_factor = factors[interval]
-        new_factor = new_factor * count[_IN_USE]
+        new_factor = new_factor * count[IN_USE]
         if stop_x < 2.0 or new_factor != factor or (t == limit and limit < t_end):
             factor = new_factor
             derivative(t, new, factor, model, k[0])
@@ -485,11 +361,11 @@ def advance_compiled(
                 k[0, j] = k[12, j]
         for j in range(SIZE):
             y[j] = new[j]
-        clock[_T], count[_INTERVAL] = t, interval
-        if count[_STATUS] != DONE:
+        clock[TIME], count[INTERVAL] = t, interval
+        if count[STATUS] != DONE:
             ended = True
-    count[_ROW] = row
-    clock[_T], count[_INTERVAL] = t, interval
+    count[ROW] = row
+    clock[TIME], count[INTERVAL] = t, interval
     if ended and row == n and n > 0 and t_out[n - 1] < t:
         return DONE  # the next block may have rows before the end
-    return count[_STATUS]
+    return count[STATUS]

@@ -1,0 +1,209 @@
+"""What the integrators share: the memory between calls, and rows and events from the polynomial of one step.
+
+Each integrator makes steps in its own way and leaves every step as a polynomial in x = (t - t0) / h of degree up to
+seven; from there on a row of output, the root of an event function and the end of a run are the same for all.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sailviz.compiled import compiled, inlined
+from sailviz.propagate.dynamics import SIZE
+from sailviz.propagate.events import APSIS, END_OF_USE, RADIUS, STOP, measure
+
+EVENT_SAMPLES = 4  # at most per step, so that two crossings inside one step are seen
+MOST_EVENTS = 4096  # recorded between two calls, and then those of one more step
+
+# status of `advance`
+DONE, STOPPED, EVENTS_FULL, UNDERFLOW, NOT_FINITE, SURFACE = range(6)
+
+# rows of Integration.work after the sixteen stages; one array, so that the optimiser knows that they do not overlap
+Y, W, NEW = 16, 17, 18  # state at the start of the step, a state to evaluate, state at its end
+DENSE, CLOCK = 19, 27  # eight rows of monomial coefficients over the last step; a row of times
+
+# places in the CLOCK row and in Integration.count
+TIME, STEP, DENSE_START, DENSE_STEP = 0, 1, 2, 3
+ROW, INTERVAL, IN_USE, STARTED, STEPS, REJECTED, EVENTS, STATUS, STOPPED_BY = 0, 1, 2, 3, 4, 5, 6, 7, 8
+
+
+class Integration(NamedTuple):
+    """Everything that an integration remembers between calls."""
+
+    work: np.ndarray  # (28, SIZE) sixteen stages, the first the derivative at the state; then the rows named above
+    count: np.ndarray  # (9,) int64, see the places above
+    sign: np.ndarray  # (events,) event functions at the state
+    event: np.ndarray  # (MOST_EVENTS and those of one step, 9) index in the watch, time s, state
+
+
+def time(s) -> float:
+    """Time that the integration has reached, s."""
+    return float(s.work[CLOCK, TIME])
+
+
+def state(s) -> np.ndarray:
+    """State (7,) that it has reached: position m, velocity m/s, mass kg."""
+    return s.work[Y].copy()
+
+
+def drain_events(s) -> list[tuple[int, float, np.ndarray]]:
+    """(index in the watch, time s, state (7,)) of every event since the last call; makes room for more. Index -1 is
+    contact with the surface."""
+    n = int(s.count[EVENTS])
+    s.count[EVENTS] = 0
+    return [(int(row[0]), float(row[1]), row[2:].copy()) for row in s.event[:n]]
+
+
+def in_use(s) -> bool:
+    """False once an END_OF_USE event has switched the device off for good."""
+    return bool(s.count[IN_USE])
+
+
+def stopped_by(s) -> int:
+    """Index in the watch of the event that stopped the run, after STOPPED."""
+    return int(s.count[STOPPED_BY])
+
+
+def rows_done(s) -> int:
+    """Rows of the current block that are filled."""
+    return int(s.count[ROW])
+
+
+def statistics(s) -> tuple[int, int]:
+    """Accepted and rejected steps so far."""
+    return int(s.count[STEPS]), int(s.count[REJECTED])
+
+
+@inlined
+def fill(m, t0, h, t_out, out, first, last):
+    """Rows first..last of out (components, n) at the times t_out (n,) from the polynomial of the step [t0, t0 + h]."""
+    inverse = 1.0 / h
+    times = t_out[first:last]
+    for j in range(out.shape[0]):
+        m0, m1, m2, m3 = m[0, j], m[1, j], m[2, j], m[3, j]
+        m4, m5, m6, m7 = m[4, j], m[5, j], m[6, j], m[7, j]
+        row = out[j][first:last]  # a slice of one row: its stride is known, the loop becomes vector code
+        for i in range(len(times)):
+            x = (times[i] - t0) * inverse
+            row[i] = m0 + x * (m1 + x * (m2 + x * (m3 + x * (m4 + x * (m5 + x * (m6 + x * m7))))))
+
+
+@inlined
+def evaluate(m, x, w):
+    """w (SIZE,) = the polynomial at x in [0, 1]."""
+    for j in range(SIZE):
+        p = m[7, j]
+        for i in range(6, -1, -1):
+            p = p * x + m[i, j]
+        w[j] = p
+
+
+@inlined
+def root(m, kind, level, mu, low, high, g_low, w):
+    """x in [low, high] where the event function changes sign: bisection to the last bit, w = the state there."""
+    for _ in range(64):
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high:
+            break
+        evaluate(m, middle, w)
+        g = measure(kind, level, w, mu)
+        if (g < 0.0) == (g_low < 0.0):
+            low = middle
+        else:
+            high = middle
+    evaluate(m, high, w)
+    return high
+
+
+@inlined
+def note(s, index, time, w):
+    n = s.count[EVENTS]
+    s.event[n, 0] = index
+    s.event[n, 1] = time
+    for j in range(7):
+        s.event[n, 2 + j] = w[j]
+    s.count[EVENTS] = n + 1
+
+
+@compiled
+def find_events(s, watch, t0, h, x_end, samples, mu, w):
+    """Record every event of the step [t0, t0 + h] up to x_end in order of time, looking at that many samples of it.
+    Returns x of the first that stops the run or ends the use of the device, else 2, and its index."""
+    dense = s.work[DENSE:CLOCK]
+    before = s.count[EVENTS]
+    low = 0.0
+    for piece in range(1, samples + 1):
+        high = x_end * piece / samples
+        stop_x, stop_index = 2.0, -1
+        first = s.count[EVENTS]
+        for e in range(len(watch.kind)):
+            kind, level = watch.kind[e], watch.level[e]
+            evaluate(dense, high, w)
+            g_low, g = s.sign[e], measure(kind, level, w, mu)
+            s.sign[e] = g
+            if watch.action[e] == END_OF_USE and s.count[IN_USE] == 0:
+                continue
+            if not (
+                (g_low < 0.0 and g >= 0.0 and watch.sense[e] >= 0) or (g_low > 0.0 and g <= 0.0 and watch.sense[e] <= 0)
+            ):
+                continue
+            x = root(dense, kind, level, mu, low, high, g_low, w)
+            at = s.count[EVENTS]
+            note(s, e, t0 + x * h, w)
+            while at > first and s.event[at - 1, 1] > s.event[at, 1]:  # keep them in order of time
+                for j in range(9):
+                    s.event[at - 1, j], s.event[at, j] = s.event[at, j], s.event[at - 1, j]
+                at -= 1
+            if watch.action[e] != 0 and x < stop_x:
+                stop_x, stop_index = x, e
+        if stop_index >= 0:
+            n = s.count[EVENTS]
+            while (
+                n > before and s.event[n - 1, 1] > t0 + stop_x * h
+            ):  # what would have come after the stop did not happen
+                n -= 1
+            s.count[EVENTS] = n
+            evaluate(dense, stop_x, w)
+            for e in range(len(watch.kind)):
+                s.sign[e] = measure(watch.kind[e], watch.level[e], w, mu)
+            s.sign[stop_index] = 0.0
+            return stop_x, stop_index
+        low = high
+    return 2.0, -1
+
+
+@inlined
+def surface_met(y, new, mu, surface):
+    """(whether a step from y to new ends below the surface, whether it passes a periapsis that may lie below it)."""
+    touched = new[0] * new[0] + new[1] * new[1] + new[2] * new[2] < surface * surface
+    passed = surface > 0.0 and measure(APSIS, 0.0, y, mu) < 0.0 and measure(APSIS, 0.0, new, mu) > 0.0
+    return touched, passed
+
+
+@inlined
+def happenings(s, watch, t0, h, touched, passed, samples, mu, surface, new, w):
+    """Note what happens in the step [t0, t0 + h], whose polynomial is there. Returns x where it is cut short, with new
+    = the state there, else 2."""
+    m = s.work[DENSE:CLOCK]
+    stop_x, stop_index, contact = 2.0, -1, 2.0
+    lowest = 1.0
+    if passed:
+        lowest = root(m, APSIS, 0.0, mu, 0.0, 1.0, -1.0, w)
+        touched = measure(RADIUS, surface, w, mu) < 0.0
+    if touched:
+        contact = root(m, RADIUS, surface, mu, 0.0, lowest, 1.0, w)
+    if len(watch.kind) > 0:
+        stop_x, stop_index = find_events(s, watch, t0, h, min(contact, 1.0), samples, mu, w)
+    if contact < min(stop_x, 2.0):
+        evaluate(m, contact, w)
+        note(s, -1, t0 + contact * h, w)
+        stop_x, stop_index, s.count[STATUS] = contact, -1, SURFACE
+    if stop_x < 2.0:  # the run goes on, or ends, at the event
+        evaluate(m, stop_x, new)
+        if stop_index >= 0 and watch.action[stop_index] == STOP:
+            s.count[STATUS], s.count[STOPPED_BY] = STOPPED, stop_index
+        elif stop_index >= 0:
+            s.count[IN_USE] = 0
+    return stop_x

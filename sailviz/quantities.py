@@ -49,6 +49,11 @@ def _acted(name: str):
     return lambda run: np.asarray(run.environment.get(name, np.full(len(run), np.nan)), float)
 
 
+def _mean_altitude(run: Run):
+    """Without the swing that an oblate planet gives it, where the run knows that; else of the semi-major axis."""
+    return run.environment.get("mean_altitude_m", run.elements.semi_major_axis - run.setting.body.radius)
+
+
 # name -> (dimension, values of a run)
 QUANTITIES = {
     "time": ("time", lambda run: run.time),
@@ -79,7 +84,7 @@ QUANTITIES = {
     "thrust_acceleration": ("acceleration", lambda run: run.thrust.magnitude),
     "closed_form_error": ("none", _closed_form_error),
     "perigee_altitude": ("length", _above_surface(lambda e: e.semi_major_axis * (1 - e.eccentricity))),
-    "mean_altitude": ("length", _above_surface(lambda e: e.semi_major_axis)),
+    "mean_altitude": ("length", _mean_altitude),
     "apogee_altitude": ("length", _above_surface(lambda e: e.semi_major_axis * (1 + e.eccentricity))),
     "quasi_circular_altitude": ("length", _acted("quasi_circular_altitude_m")),
     "sunlit": ("none", _acted("sunlit")),  # its mean is the share of the time

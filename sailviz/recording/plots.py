@@ -49,7 +49,7 @@ UNITS = {  # ending of a name -> factor and unit on the plot; the longest that f
 }
 LOGARITHMIC = {"_m3": "1/m³", "_1_m3": "1/m³", "_m_3": "1/m³", "_kg_m3": "kg/m³", "_per_m3": "1/m³"}
 LOGARITHMIC_COLUMNS = {"air_drag_N": "N"}  # over many powers of ten although of another unit
-DRAWN_OTHERWISE = ("earth_rotation_rad", "quasi_circular_altitude_m", "primer_direction")
+DRAWN_OTHERWISE = ("earth_rotation_rad", "mean_altitude_m", "quasi_circular_altitude_m", "primer_direction")
 COLORS = {"plasma_density_per_m3": look.SERIES[4], "plasma_force_N_m": look.THRUST, "air_drag_N": look.SERIES[1]}
 
 
@@ -155,13 +155,16 @@ def distance_plot(first: Run, frame: Frame) -> Plot:
 
 
 def descent_plot(first: Run) -> Plot:
-    """Altitudes over the equator's radius: of perigee, semi-major axis and apogee, and of the analytic decay."""
+    """Altitudes over the equator's radius: of perigee and apogee, the mean one without the swing of an oblate planet
+    where the run knows it, else of the semi-major axis, and of the analytic decay.
+    """
     radius = first.setting.body.radius
     analytic = "quasi_circular_altitude_m" in first.environment
 
     def values(run: Run) -> np.ndarray:
         a, e = bound(run.elements.semi_major_axis), run.elements.eccentricity
-        columns = [a * (1 - e) - radius, a * (1 + e) - radius, a - radius]
+        mean = run.environment.get("mean_altitude_m", a - radius)
+        columns = [a * (1 - e) - radius, a * (1 + e) - radius, mean]
         if analytic:
             columns.append(run.environment["quasi_circular_altitude_m"])
         return np.stack(columns, 1) / 1e3

@@ -21,7 +21,7 @@ TURNS = 30.0  # revolutions that are shown of a run whose rows are sparse
 PLANE_TURNS = 6.0  # revolutions round a planet from which a run shows the plane of its orbit
 SMOOTH = 72  # points of a trail per revolution
 CLOSE = 1 / 6  # revolutions between drawn rows below which the place of each is its own even there
-STILL = 1e-6  # of the circular speed: below it a velocity has no direction
+STILL = 3e-3  # of the circular speed: a craft that is held in place drifts at less
 
 
 @dataclass(frozen=True)

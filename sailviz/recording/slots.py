@@ -11,7 +11,7 @@ from sailviz.recording.samples import Frame
 ALWAYS = ("distance", "altitude", "inclination", "eccentricity", "angles", "clock", "thrust")
 ALWAYS = tuple(f"/plots/{name}" for name in ALWAYS)
 BRAKE = (  # what a tether's run shows below its altitude; what is in one place shares it as tabs
-    ("plasma_density", "mean_ion_mass", "air_density", "solar_flux"),
+    ("plasma_density", "mean_ion_mass", "air_density", "solar_flux", "altitude_over"),
     ("plasma_force", "thrust", "air_drag"),
     ("tether_current", "tether_power", "tether_voltage", "tether_tilt"),
 )

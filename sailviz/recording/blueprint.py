@@ -71,6 +71,7 @@ def space_view(layout: Layout, camera: Camera) -> rrb.Spatial3DView:
     if camera.name == DESCENT:
         contents = [f"+ /world/{name}/**" for name in ("stars", "plane", "center", "night")]
         contents += ["- /world/night/umbra", "- /world/night/sunlight/**"]
+        contents += [f"- /world/center/air/shell{k}" for k in range(1, 4)]  # their heights are for the eye only
     if camera.name == "Follow":
         contents += ["- /world/names/**", "- /world/night/umbra"]  # labels show through; the umbra's wall would be near
     return rrb.Spatial3DView(

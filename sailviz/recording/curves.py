@@ -90,7 +90,7 @@ class Curves:
         changed = np.flatnonzero(np.concatenate([[before or ""], states[:-1]]) != states)
         self._state[lane] = str(states[-1])
         if len(changed):
-            self.changes[lane] += len(changed) - (before is None)
+            self.changes[lane] += int(np.sum(states[changed] != "unknown")) - (before is None)
             index = rows.timelines(run.setting, run.first + changed, run.time[changed])
             self._pen.columns(f"/phase/{lane}", index, rr.StateChange.columns(state=states[changed].tolist()))
 

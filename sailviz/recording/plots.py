@@ -139,7 +139,8 @@ def angle_plots(first: Run) -> list[Plot]:
 
 def distance_plot(first: Run, frame: Frame) -> Plot:
     """Distance and semi-major axis: over a planet from its surface, in km, elsewhere from the centre, in view units."""
-    if first.setting.craft.kind == "plasma-brake" and first.setting.body.radius:
+    comes_down = first.setting.craft.kind == "plasma-brake" or "air_drag_N" in first.environment
+    if comes_down and first.setting.body.radius:
         return descent_plot(first)
     radius = 0.0 if frame.sun else first.setting.body.radius
     unit = 1e3 if radius else frame.unit

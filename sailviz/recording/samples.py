@@ -20,7 +20,7 @@ SPARSE = 1 / 12  # revolutions between drawn rows above which lines from row to 
 TURNS = 30.0  # revolutions that are shown of a run whose rows are sparse
 PLANE_TURNS = 6.0  # revolutions round a planet from which a run shows the plane of its orbit
 SMOOTH = 72  # points of a trail per revolution
-CLOSE = 1 / 6  # revolutions between drawn rows below which the place of each is its own even there
+CLOSE = 1 / 6  # revolutions between drawn rows in a dense window
 STILL = 3e-3  # of the circular speed: a craft that is held in place drifts at less
 
 
@@ -43,6 +43,7 @@ class Frame:
     mu: float
     period: float  # s of a revolution at the start; inf where it never comes round
     sparse: bool
+    close: float  # s between drawn rows below which the place of each is its own even with sparse rows
     longitude: float  # rad, true longitude of the first row
     turns: float  # revolutions of the run at the first row's pace
     smooth: int  # pieces of a trail between neighbouring drawn rows
@@ -57,17 +58,20 @@ class Frame:
         period = 2 * np.pi * np.sqrt(a**3 / setting.body.mu) if np.isfinite(a) and a > 0 else np.inf
         spacing = setting.duration / max(setting.rows - 1, 1) * rows.stride(setting.rows, PICTURE_ROWS) / period
         sparse = bool(spacing > SPARSE)
+        most = SPARSE_ROWS if sparse else PICTURE_ROWS
+        pace = setting.duration / max(setting.rows - 1, 1) * rows.stride(setting.rows, most)
         return Frame(
             unit=length,
             unit_name=name,
             sun=setting.body.name == "Sun",
-            most=SPARSE_ROWS if sparse else PICTURE_ROWS,
+            most=most,
             rows=setting.rows,
             start=float(first.time[0]),
             duration=setting.duration,
             mu=setting.body.mu,
             period=period,
             sparse=sparse,
+            close=min(CLOSE * period, 0.5 * pace),
             longitude=float(longitude(first.elements)[0]),
             turns=setting.duration / period,
             smooth=int(np.clip(np.ceil(SMOOTH * spacing), 1, 12)),
@@ -125,7 +129,7 @@ class Samples:
         close = np.ones(len(run), bool)
         if frame.sparse:
             times = np.concatenate([before, run.time])
-            close = times[1:] - CLOSE * frame.period < times[:-1]
+            close = times[1:] - frame.close < times[:-1]
             close = close[1:] & close[:-1]
             even_position, even_velocity = slowed(run, frame)
             position = np.where(close[:, None], position, even_position)

@@ -61,8 +61,10 @@ def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple, tuple
         low, high = max(min(r_low, a_low), 0.5 * r_low), min(max(r_high, a_high), 1.5 * r_high)
         shown.append(view("/plots/distance", low=low, high=high, share=3.0))
     else:
-        known_descent = len(known["/plots/altitude"].names) > 2
-        shown.append(view("/plots/altitude", share=3.0, legend="LeftBottom" if known_descent else "RightTop"))
+        descent = len(known["/plots/altitude"].names) > 2
+        shown.append(
+            view("/plots/altitude", share=4.2 if descent else 3.0, legend="LeftBottom" if descent else "RightTop")
+        )
     tilt = curves.reach("/plots/inclination")
     tilted = tilt[1] > 0.05 and (frame.sun or tilt[1] - tilt[0] > 0.05)
     shown.append(view("/plots/inclination" if tilted else "/plots/eccentricity"))

@@ -4,7 +4,7 @@
 /attitude     pitch_rad, cone_rad, clock_rad, normal (3), quaternion (xyzw, body to inertial)
 /thrust       acceleration_m_s2 (inertial, 3), acceleration_rtn_m_s2 (3), magnitude_m_s2, on (bool)
 /elements     semi_major_axis_m, eccentricity, inclination_rad, raan_rad, argument_rad, true_anomaly_rad
-/environment  whatever acted, the unit in each name; absent where nothing did
+/environment  whatever acted, the unit in each name, (n,) or (n, 3); absent where nothing did
 /approximation  NAME_position_m (3) and NAME_error_m of every other answer that was asked for; absent without any
 /events       name, time_s, state (position m, velocity m/s, mass kg: 7), at the first row not before the event
 /scene        static: what the run was made from and how far it got

@@ -159,12 +159,16 @@ class World:
             if number == 0:
                 continue
             first = start + STRIP * np.arange(number)
-            strips = [drawn(line, arcs, k, k + length, pieces) for k in first.tolist()]
             ends = first + length - 1
             index = samples.index_of(ends)
             colors = self._ramp(samples)[ends] if self._planet else None
             for part in ("recent",) if self._planet else ("recent", "past", "future"):
-                self._pen.broken_strips(f"/world/trail/{part}", index, strips, colors)
+                if arcs:
+                    strips = [drawn(line, arcs, k, k + length, pieces) for k in first.tolist()]
+                    self._pen.broken_strips(f"/world/trail/{part}", index, strips, colors)
+                else:
+                    strips = line[first[:, None] * pieces + np.arange(length * pieces + 1)]
+                    self._pen.strips(f"/world/trail/{part}", index, strips, colors)
 
     def _wide(self, run: Run, gaps) -> np.ndarray:
         """Whether the time since the row before is so long that a curve through both would miss the orbit. (n,)"""

@@ -11,6 +11,7 @@ from sailviz.constants import ROTATION_EARTH
 from sailviz.frames import rtn, unit
 from sailviz.quantities import spellings
 from sailviz.recording import digest, drawing, export, layout, plane, read, record
+from sailviz.recording.curves import Curves
 from sailviz.recording.plots import plots_of
 from sailviz.recording.rows import Picker, take
 from sailviz.recording.samples import Frame, Samples, orbits, rings
@@ -149,6 +150,16 @@ def test_outside_it_the_craft_is_drawn_on_the_orbit_of_its_row(years):
     assert np.all(distance < e.semi_major_axis * (1 + e.eccentricity) + 2)
 
 
+def test_evenly_spaced_rows_that_leap_along_the_orbit_are_all_slowed(runs, tmp_path):
+    run = runs.descent(rows=601, days=0.1 * 600 * 5_800 / DAY)  # a tenth of a revolution from row to row
+    frame = Frame.of(run)
+    assert frame.sparse
+    record(run, tmp_path / "run.rrd")
+    place, _ = column(read(tmp_path / "run.rrd"), "/world/craft", "translation")
+    step = np.arccos(np.clip(np.sum(unit(place[1:]) * unit(place[:-1]), 1), -1, 1))
+    assert step.max() < 2 * np.pi * 30 / 600 * 1.05  # 30 revolutions over the run, on a nearly circular orbit
+
+
 def test_evenly_spaced_rows_are_thinned_evenly_and_others_by_time_too():
     class Rows:
         def __init__(self, time, first=0):
@@ -257,6 +268,23 @@ def test_light_and_shadow_are_unknown_between_rows_far_apart(years):
         known = "on" if run.environment["sunlit"][row] else "off"
         assert state == ("unknown" if gap > 3600 else known)
     assert {"on", "off", "unknown"} == set(states)
+
+
+def test_a_lane_of_light_is_left_out_where_all_rows_are_far_apart(runs):
+    run = with_everything(runs.descent(rows=200, days=300.0))
+    curves = Curves(Silent(), run, Frame.of(run))
+    curves.add(run)
+    assert curves.changes["sunlit"] == 0
+    assert curves.changes["force_law_valid"] > 0
+
+
+class Silent:
+    """A pen that writes nothing."""
+
+    def static(self, *_):
+        pass
+
+    columns = static
 
 
 def test_altitudes_of_perigee_and_apogee_and_the_analytic_decay_share_a_plot(years):

@@ -40,6 +40,8 @@ def low_orbit_columns(p: Plan, time, states, values) -> dict[str, np.ndarray]:
     oblateness = J2_EARTH * RADIUS_EARTH**2 if around.j2 else 0.0
     axis = orbital.mean_semi_major_axis(position, velocity, p.body.mu, oblateness)
     columns = {"mean_altitude_m": axis - p.body.radius}
+    if p.quasi_circular is not None:
+        columns["quasi_circular_altitude_m"] = p.quasi_circular.altitude(time)
     if around.height_above == "ellipsoid":
         columns["altitude_over_ellipsoid_m"] = values[seen.ALTITUDE]
     if scene.epoch is not None:

@@ -42,6 +42,7 @@ from sailviz.scene_sections import HELD_STARTS
 
 if TYPE_CHECKING:
     from sailviz.first_order import FirstOrder
+    from sailviz.quasi_circular import QuasiCircular
 
 BODIES = {
     "sun": Body("Sun", MU_SUN, RADIUS_SUN),
@@ -67,6 +68,7 @@ class Plan:
     names: tuple[str, ...]  # of the watched events
     design: object | None  # the design's result for starts that ask for one
     approximations: dict[str, FirstOrder]
+    quasi_circular: QuasiCircular | None
     keep: tuple  # compiled user functions must live as long as the plan
     identity: str
 
@@ -119,6 +121,7 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
         names,
         design,
         _approximations(scene, body, position, velocity, design),
+        _quasi_circular(scene, position, velocity),
         tuple(keep),
         _identity(scene, steering=steering, force=force),
     )
@@ -325,7 +328,7 @@ def _steering(scene, design):
     """(id, parameters, table or None, interpolation) for the right-hand side."""
     steering = scene.steering
     plain = (None, law.LINEAR)
-    if steering is None:
+    if steering is None or scene.device.kind == "plasma-brake":  # a tether's attitude is among its device's numbers
         return law.RADIAL, (), *plain
     if steering.kind == "as designed" and isinstance(design, Track):
         table = law.table(design.time - design.time[0], design.pitch, np.unwrap(design.clock), design.throttle, "cubic")
@@ -429,8 +432,9 @@ def _watched(scene, body):
 
 
 def _approximations(scene, body, position, velocity, design) -> dict[str, FirstOrder]:
-    """The analytic solutions that a scene wants recorded beside its own."""
-    if not scene.approximation:
+    """The analytic trajectories that a scene wants recorded beside its own."""
+    wanted = [item for item in scene.approximation if item.kind == "first-order"]
+    if not wanted:
         return {}
     from sailviz.first_order import FirstOrder
 
@@ -452,8 +456,17 @@ def _approximations(scene, body, position, velocity, design) -> dict[str, FirstO
         item.name: FirstOrder(
             position, velocity, mu, scene.propagation.duration, thrust, item.leg, item.scheme, scene.source
         )
-        for item in scene.approximation
+        for item in wanted
     }
+
+
+def _quasi_circular(scene, position, velocity) -> QuasiCircular | None:
+    """The analytic decay that a scene wants recorded beside its own."""
+    if all(item.kind != "quasi-circular" for item in scene.approximation):
+        return None
+    from sailviz.quasi_circular import QuasiCircular
+
+    return QuasiCircular(scene, position, velocity)
 
 
 def epoch_of(scene) -> np.datetime64 | None:

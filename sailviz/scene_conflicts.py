@@ -62,10 +62,7 @@ def conflicts(scene: Scene) -> list[tuple[str, str]]:
             found.append(("ephemeris", "DE421 reaches from 1899 to 2053"))
         if find_spec("skyfield_data") is None or find_spec("jplephem") is None:
             found.append(("ephemeris", 'DE421 needs the extra "ephemeris": pip install "sailviz[ephemeris]"'))
-    if scene.approximation:
-        found += [("approximation[0]", sentence) for sentence in _beyond_first_order(scene)]
-        if len({item.name for item in scene.approximation}) < len(scene.approximation):
-            found.append(("approximation[1].name", "two approximations have the same name"))
+    found += _approximated(scene)
     if start.kind == "circular" and start.altitude is not None and _body_radius(scene) == 0:
         found.append(("start.altitude", "the body has no radius to measure an altitude from"))
     if scene.environment.solar_wind.kind != "steady" and device.kind != "electric-sail":
@@ -187,6 +184,43 @@ def _altitudes(scene: Scene) -> tuple[float | None, float | None]:
         return a * (1 - e) - RADIUS_EARTH, (a * (1 + e) if e < 1 else float("inf")) - RADIUS_EARTH
     altitude = start.radius - RADIUS_EARTH if start.radius is not None else start.altitude or start.mean_altitude
     return altitude, altitude
+
+
+def _approximated(scene: Scene) -> list[tuple[str, str]]:
+    """What is wrong with the analytic solutions that a scene asks for."""
+    found, names, beyond = [], set(), {"first-order": _beyond_first_order, "quasi-circular": _beyond_quasi_circular}
+    for i, item in enumerate(scene.approximation):
+        place, name = f"approximation[{i}]", getattr(item, "name", item.kind)
+        if name in names:
+            words = "two approximations have the same name"
+            found.append(
+                (f"{place}.name", words) if item.kind == "first-order" else (place, f"{item.kind} stands twice")
+            )
+        names.add(name)
+        found += [(place, sentence) for sentence in beyond[item.kind](scene)]
+    return found
+
+
+def _beyond_quasi_circular(scene: Scene) -> list[str]:
+    """What keeps a scene from the quasi-circular decay, which knows a mean force over the altitude and nothing else."""
+    device, around, found = scene.device, scene.environment, []
+    if scene.start.kind != "circular" or scene.body != "earth":
+        found.append('the quasi-circular decay begins on a circular orbit: body = "earth", start.kind = "circular"')
+    brake = device.kind == "plasma-brake"
+    if not brake and around.atmosphere is None:
+        found.append("the quasi-circular decay needs a plasma brake or the drag of an atmosphere")
+    if device.kind not in ("plasma-brake", "none") or device.active is not None:
+        found.append("the quasi-circular decay knows a plasma brake that is always on, and drag")
+    if around.solar_flux == "cycle":
+        found.append("the quasi-circular decay needs a constant solar flux")
+    if not brake:
+        return found
+    law = scene.steering.kind if scene.steering else "vertical"
+    if device.eclipse != "on" or device.power is not None or device.polarity == "positive":
+        found.append("the quasi-circular decay knows a negative tether at full voltage")
+    if law == "gravity-gradient" or around.magnetic_sensitivity > 0:
+        found.append("the quasi-circular decay knows a vertical or spinning tether and no magnetic field")
+    return found
 
 
 def _beyond_first_order(scene: Scene) -> list[str]:

@@ -603,13 +603,22 @@ class Watched(Section):
         return self
 
 
-class Approximation(Section):
+class FirstOrderApproximation(Section):
     """The first-order analytic solution, recorded beside the integrated trajectory."""
 
     kind: Literal["first-order"]
     name: str = "first order"
     leg: Annotated[Angle, POSITIVE] | None = None
     scheme: Literal["plain", "midpoint"] = "plain"
+
+
+class QuasiCircularApproximation(Section):
+    """The decay of a nearly circular orbit by quadrature, its altitude recorded beside the integrated one."""
+
+    kind: Literal["quasi-circular"]
+
+
+Approximation = Annotated[FirstOrderApproximation | QuasiCircularApproximation, Field(discriminator="kind")]
 
 
 class Recording(Section):

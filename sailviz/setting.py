@@ -12,10 +12,13 @@ from sailviz import elements as orbital
 from sailviz import ephemeris
 from sailviz.describe import parameters_in_words
 from sailviz.design.holding import Track
+from sailviz.environment import ionosphere, solar_level, sun
 from sailviz.plan import TRACK_POINTS, Plan, epoch_of, sail_strength, third_body
-from sailviz.propagate import dop853
-from sailviz.run import Craft, Reference, Setting
+from sailviz.propagate import dop853, row
+from sailviz.run import Craft, Reference, Setting, Shell
 from sailviz.scene_sections import HELD_STARTS
+
+SHELL_ANGLES, SHELL_STEP = 120, 25e3  # round the orbit; m between altitudes
 
 
 def setting_of(p: Plan, planets, rows) -> Setting:
@@ -48,6 +51,7 @@ def setting_of(p: Plan, planets, rows) -> Setting:
         ),
         identity=p.identity,
         play_duration=scene.recording.play_duration,
+        shells=_shells(p),
     )
 
 
@@ -104,6 +108,31 @@ def _references(p: Plan, planets) -> tuple[Reference, ...]:
     found += [Reference(name, "approximation", way.positions(time)) for name, way in p.approximations.items()]
     found += [Reference(name, "planet", orbit) for name, orbit in planets.items()]
     return tuple(found)
+
+
+def _shells(p: Plan) -> tuple[Shell, ...]:
+    """The plasma that a tether meets, in the plane of its first orbit."""
+    plasma, earth = p.scene.environment.ionosphere, p.body.radius
+    if p.body.name != "Earth" or plasma is None or plasma.kind == "exponential-force":
+        return ()
+    normal = np.cross(p.position, p.velocity)
+    normal /= np.linalg.norm(normal)
+    towards = p.position / np.linalg.norm(p.position)
+    angle = np.linspace(0.0, 2 * np.pi, SHELL_ANGLES, endpoint=False)
+    axis = orbital.elements(p.position, p.velocity, p.body.mu)
+    highest = float(axis.semi_major_axis * (1 + axis.eccentricity)) - earth
+    altitude = np.arange(ionosphere.LOWEST, min(highest + 100e3, ionosphere.HIGHEST) + 1.0, SHELL_STEP)
+    if plasma.kind == "iri-2020":
+        place = np.outer(np.cos(angle), towards) + np.outer(np.sin(angle), np.cross(normal, towards))
+        model = p.model.parameters
+        hour = np.arctan2(place[:, 1], place[:, 0]) - sun.mean_right_ascension.py_func(0.0, model, row.SUN) + np.pi
+        flux = solar_level.flux.py_func(0.0, model, row.FLUX)
+        density, _ = ionosphere.density(np.arcsin(place[:, 2])[:, None], hour[:, None], altitude, flux)
+        density = density * plasma.density_factor
+    else:
+        fade = ionosphere.exponential.py_func(altitude, plasma.reference_altitude, plasma.density, plasma.scale_height)
+        density = np.tile(fade, (len(angle), 1))
+    return (Shell("plasma density", "1/m³", normal, towards, angle, altitude, density),)
 
 
 def planets_in_view(p: Plan) -> dict[str, np.ndarray]:

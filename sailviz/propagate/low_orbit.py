@@ -64,6 +64,13 @@ def plasma_at(r, latitude, local_time, altitude, f107, p):
 
 
 @called
+def power_drawn(density, ion_mass, speed, voltage, p):
+    """Power, W, that the supply needs to hold the tether at |V|."""
+    current = tether_current(density, ion_mass, speed, voltage, p[at.LENGTH], p[at.WIRE_DIAMETER], p[at.POLARITY])
+    return voltage * current / p[at.EFFICIENCY]
+
+
+@called
 def applied_voltage(density, ion_mass, speed, light, p):
     """|V| that the power allows, V: full, or what the power in sunlight or in the shadow supports."""
     power = p[at.POWER] if light > 0.5 else p[at.ECLIPSE_POWER]
@@ -71,9 +78,14 @@ def applied_voltage(density, ion_mass, speed, light, p):
         return p[at.VOLTAGE]
     if power == 0.0:
         return 0.0
-    nominal = p[at.VOLTAGE]
-    current = tether_current(density, ion_mass, speed, nominal, p[at.LENGTH], p[at.WIRE_DIAMETER], p[at.POLARITY])
-    return limited_voltage(nominal, nominal * current / p[at.EFFICIENCY], power)
+    voltage = p[at.VOLTAGE]
+    drawn = power_drawn(density, ion_mass, speed, voltage, p)
+    if drawn <= power:
+        return voltage
+    for _ in range(3):  # the ram speed in the current: 1 % at 100 V
+        voltage = limited_voltage(voltage, drawn, power) if drawn > power else voltage
+        drawn = power_drawn(density, ion_mass, speed, voltage, p)
+    return voltage * min(1.0, power / drawn)  # never above: the power grows faster than the voltage
 
 
 @called

@@ -17,8 +17,13 @@ from sailviz.cli_shared import BAD_INPUT
 )
 @click.option("--style", type=click.Choice(["dark", "light"]), default="dark", show_default=True)
 @click.option("--dpi", type=click.IntRange(30, 1200), default=160, show_default=True, help="Of a PNG.")
+@click.option(
+    "--series",
+    metavar="FILE",
+    help="Solar wind for wind-fit: .csv, .npz or .parquet with utc or time_h and pressure_nPa, or an OMNI2 text.",
+)
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
-def figure(figures, listing, output, style, dpi, quiet):
+def figure(figures, listing, output, style, dpi, series, quiet):
     """Draw figures: the thesis' own from our functions, and maps of stability, validity, spirals and escape."""
     from sailviz.figures import FigureError, draw, names, title
 
@@ -28,6 +33,7 @@ def figure(figures, listing, output, style, dpi, quiet):
         return
     if not figures:
         raise click.UsageError("Name a figure, or see them with --list.")
+    options = {"series": series} if series else {}
     target = Path(output) if output else Path()
     folder = not output or target.is_dir() or not target.suffix
     if len(figures) > 1 and not folder:
@@ -38,7 +44,7 @@ def figure(figures, listing, output, style, dpi, quiet):
         if folder:
             target.mkdir(parents=True, exist_ok=True)
         for name in figures:
-            path = draw(name, target / f"{name}.png" if folder else target, style, dpi)
+            path = draw(name, target / f"{name}.png" if folder else target, style, dpi, **options)
             if not quiet:
                 click.echo(f"Drew {path}: {title(name)}")
     except (FigureError, OSError) as error:

@@ -32,25 +32,37 @@ def title(name: str) -> str:
     return _entry(name).title
 
 
-def figure(name: str, style: str = "dark"):
-    """A figure as a matplotlib Figure. style : "dark" or "light"."""
+def figure(name: str, style: str = "dark", **options):
+    """A figure as a matplotlib Figure. style : "dark" or "light". options : what the figure takes; series="FILE", a
+    measured solar wind, for wind-fit."""
     entry = _entry(name)
+    for key in options:
+        if key not in entry.takes:
+            users = [other for other, candidate in CATALOGUE.items() if key in candidate.takes]
+            raise FigureError(f"{name} takes no {key}" + (f", only {', '.join(users)} does" if users else ""))
     try:
         from sailviz.figures import page
     except ImportError:
         raise FigureError('figures need matplotlib: pip install "sailviz[plot]"') from None
     if style not in page.STYLES:
         raise FigureError(f"there is no style {style!r}, only {' and '.join(page.STYLES)}")
-    return page.compose(entry, style)
+    try:
+        return page.compose(entry, style, options)
+    except OSError as error:
+        raise FigureError(f"cannot read {error.filename}: {(error.strerror or str(error)).lower()}") from None
+    except ValueError as error:
+        if not options:
+            raise
+        raise FigureError(str(error)) from None
 
 
-def draw(name: str, path, style: str = "dark", dpi: int = 160) -> Path:
-    """Draw a figure into a file, PNG, SVG or PDF by its ending. Returns the path."""
+def draw(name: str, path, style: str = "dark", dpi: int = 160, **options) -> Path:
+    """Draw a figure into a file, PNG, SVG or PDF by its ending. options as of `figure`. Returns the path."""
     path = Path(path)
     kind = path.suffix.lower().lstrip(".")
     if kind not in FORMATS:
         raise FigureError(f"a figure is written as {', '.join(FORMATS)}; {path.name} ends in none of them")
-    drawn = figure(name, style)
+    drawn = figure(name, style, **options)
     from sailviz.figures import page
 
     try:

@@ -81,8 +81,8 @@ class Pen:
         return bar
 
 
-def compose(entry, style_name: str) -> Figure:
-    """The page: panels, title above, origin below."""
+def compose(entry, style_name: str, options) -> Figure:
+    """The page: panels, title above, origin below. options : keywords for the drawing function."""
     style = STYLES[style_name]
     rc = {
         "font.family": "DejaVu Sans",
@@ -126,7 +126,7 @@ def compose(entry, style_name: str) -> Figure:
         figure.suptitle(entry.title, fontsize=13, color=style.ink, fontweight="bold")
         figure.supxlabel(entry.note, fontsize=8.5, color=style.quiet)
         drawer = getattr(import_module(f"sailviz.figures.{entry.module}"), entry.function)
-        drawer(Pen(style), *axes)
+        drawer(Pen(style), *axes, **options)
         figure.draw_without_rendering()
     return figure
 

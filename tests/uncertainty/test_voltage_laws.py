@@ -7,7 +7,10 @@ import pytest
 from numba import njit
 from scipy.integrate import solve_ivp
 
-from sailviz.propagate import control
+from sailviz import steering
+from sailviz.constants import AU, GRAVITY_AT_1_AU
+from sailviz.propagate import control, dynamics
+from sailviz.uncertainty import wind
 
 NAN = float("nan")
 
@@ -30,6 +33,30 @@ def under(c, pressure, held=NAN, density=5e6):
 def test_unsaturated_pressure_law_makes_the_thrust_nominal(pressure):
     c = control.row("pressure", maximum_voltage=np.inf, reference_pressure=1.7e-9)
     assert factor(under(c, pressure), pressure, 1000.0, c) == pytest.approx(1, abs=1e-14)
+
+
+def test_unsaturated_pressure_law_flies_the_nominal_trajectory(fly):
+    # a_c = 1 mm/s2 at pitch 45 deg for half a year, pressure redrawn and voltage set every six hours; canonical units
+    steps, end = 730, np.pi
+    pressure = wind.generate("gamma", np.arange(float(steps)), 4, shape=2.593, scale=0.7793e-9)
+    c = control.row("pressure", maximum_voltage=np.inf, reference_pressure=2.0207e-9, interval=1.0)
+    volts, factors = control.histories(1.0, pressure, np.full(steps, 5e6), np.full(steps, 1e3), c)
+    assert np.ptp(volts) > 50e3
+    model = dynamics.model(
+        1.0,
+        device=dynamics.ELECTRIC_SAIL,
+        device_parameters=(1e-3 / GRAVITY_AT_1_AU / AU, 0, 1.0),
+        steering=steering.ORBITAL,
+        steering_parameters=(np.sqrt(0.5), np.sqrt(0.5), 0.0),
+    )
+    breaks = end / steps * np.arange(steps)
+    nominal, controlled, free = (
+        fly(model, times=[end], breaks=breaks, factors=f).states[:, -1]
+        for f in (np.ones(steps), factors, np.sqrt(pressure / 2.0207e-9))
+    )
+    assert np.hypot(*nominal[:2]) > 1.4
+    np.testing.assert_allclose(controlled, nominal, atol=1e-12)
+    assert np.abs(free - nominal).max() > 1e-3
 
 
 def test_pressure_law_saturates_at_the_maximum_below_the_critical_pressure():

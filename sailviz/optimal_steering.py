@@ -117,43 +117,46 @@ def _film_pitch(b1, b2, b3, c, s):
 
 @inlined
 def _polynomial(d):
-    """phi deg, its slope, gamma and its slope per degree at a pitch of d deg: (3.36)-(3.38), table 3.2, clamped as
-    in the force model."""
+    """phi deg with its first and second slope and gamma with its own, per degree, at a pitch of d deg: (3.36)-(3.38),
+    table 3.2, clamped as in the force model."""
     phi = d * (4.853e-1 + d * (3.652e-3 + d * (-2.661e-4 + d * (6.322e-6 + d * (-8.295e-8 + d * 3.681e-10)))))
-    phi_slope = 4.853e-1 + d * (
+    phi1 = 4.853e-1 + d * (
         2 * 3.652e-3 + d * (-3 * 2.661e-4 + d * (4 * 6.322e-6 + d * (-5 * 8.295e-8 + d * 6 * 3.681e-10)))
     )
+    phi2 = 2 * 3.652e-3 + d * (-6 * 2.661e-4 + d * (12 * 6.322e-6 + d * (-20 * 8.295e-8 + d * 30 * 3.681e-10)))
     gamma = 1.0 + d * (6.904e-5 + d * (-1.271e-4 + d * (7.027e-7 + d * (-1.261e-8 + d * (1.943e-10 - d * 5.896e-13)))))
-    gamma_slope = 6.904e-5 + d * (
+    gamma1 = 6.904e-5 + d * (
         -2 * 1.271e-4 + d * (3 * 7.027e-7 + d * (-4 * 1.261e-8 + d * (5 * 1.943e-10 - d * 6 * 5.896e-13)))
     )
+    gamma2 = -2 * 1.271e-4 + d * (6 * 7.027e-7 + d * (-12 * 1.261e-8 + d * (20 * 1.943e-10 - d * 30 * 5.896e-13)))
     if gamma > 1.0:
-        return phi, phi_slope, 1.0, 0.0
-    return phi, phi_slope, gamma, gamma_slope
+        return phi, phi1, phi2, 1.0, 0.0, 0.0
+    return phi, phi1, phi2, gamma, gamma1, gamma2
 
 
 @inlined
 def _polynomial_pitch(c, s):
-    """Pitch deg that maximises gamma cos(alpha_l - phi): the zero of its falling slope, by false position kept in a
-    bracket; the clamp on gamma puts a kink near half a degree."""
+    """Pitch deg that maximises gamma cos(alpha_l - phi): the zero of its falling slope, by Newton kept in a bracket;
+    the clamp on gamma puts a kink near half a degree."""
     primer = np.degrees(np.arctan2(s, c))
     low, high = 0.0, np.degrees(POLYNOMIAL_LIMIT)
     d = min(0.5 * primer, high)
     for _ in range(60):
-        phi, phi_slope, gamma, gamma_slope = _polynomial(d)
+        phi, phi1, phi2, gamma, gamma1, gamma2 = _polynomial(d)
         away = np.radians(primer - phi)
         cosine, sine = np.cos(away), np.sin(away)
-        rise = np.degrees(gamma_slope) * cosine + gamma * phi_slope * sine
-        curve = -np.radians(1.0) * (gamma * phi_slope * phi_slope * cosine) + gamma_slope * phi_slope * sine
+        rise = np.degrees(gamma1) * cosine + gamma * phi1 * sine
+        curve = (np.degrees(gamma2) - np.radians(gamma) * phi1 * phi1) * cosine
+        curve += (2.0 * gamma1 * phi1 + gamma * phi2) * sine
         if rise > 0.0:
             low = d
         else:
             high = d
         following = d - rise / min(curve, -1e-4)
-        if not (low < following < high):
-            following = 0.5 * (low + high)
         if abs(following - d) < 1e-13 * (1.0 + d):
             break
+        if not (low < following < high):
+            following = 0.5 * (low + high)
         d = following
     return d
 
@@ -199,7 +202,7 @@ def steer(device, p, at, c, s, eps):
         h, f_r, f_t = 0.25 * (1.0 + 3.0 * c), 0.25 * (3.0 + c), 0.25 * s
     elif p[at + 1] == POLYNOMIAL:
         d = _polynomial_pitch(c, s)
-        phi, _, gamma, _ = _polynomial(d)
+        phi, _, _, gamma, _, _ = _polynomial(d)
         along, across = np.cos(np.radians(d)), np.sin(np.radians(d))
         f_r, f_t = gamma * np.cos(np.radians(phi)), gamma * np.sin(np.radians(phi))
         h = c * f_r + s * f_t

@@ -23,6 +23,7 @@ from sailviz.propagate import control as law
 from sailviz.propagate.ensemble_draws import (
     DRAWN,
     REPLAYED,
+    fill_normals,
     looked_up,
     normal_quantile,
     seed_stream,
@@ -37,7 +38,7 @@ LANES = 64  # flights are taken in whole multiples of this
 
 # rows of a block's state: six of motion, see ensemble_motion; what drives it; sums over time; the wind's memory
 RHO, THETA, HEIGHT, U, V, W, FACTOR, VOLTAGE, PRESSURE = range(9)
-SUM_FACTOR, SUM_VOLTAGE, SUM_SATURATED, DEVIATE, LEVEL, ROWS = range(9, 15)
+SUM_FACTOR, SUM_VOLTAGE, SUM_SATURATED, DEVIATE, LEVEL, FRESH, ROWS = range(9, 16)
 SEEN = 9  # rows of which statistics are kept: those up to the pressure
 _PAIRS = [(a, b) for a in range(6) for b in range(a + 1)]  # of the covariance, then the variances of the other three
 MOMENTS = SEEN + len(_PAIRS) + 3 + 1  # means, these, and the share at the largest voltage
@@ -137,9 +138,10 @@ def _redraw(s, lanes, words, begin, k, first, kind, memory, low, inverse_step, t
     fresh = np.sqrt(1.0 - memory * memory)
     pressure, deviate, level = s[PRESSURE], s[DEVIATE], s[LEVEL]
     if kind == DRAWN:
+        z = s[FRESH]
+        fill_normals(words, pressure, z)
         for i in range(lanes):
-            z = normal_quantile(uniform(words, i))
-            deviate[i] = z if k == 0 else memory * deviate[i] + fresh * z
+            deviate[i] = z[i] if k == 0 else memory * deviate[i] + fresh * z[i]
         for i in range(lanes):
             pressure[i] = level[i] * looked_up(deviate[i], low, inverse_step, table)
     elif kind == REPLAYED:

@@ -114,7 +114,12 @@ class Ensemble:
     resolution: np.ndarray  # (n, 6) how exactly percentiles are known: a bin's width, 0 for exact ones
 
     @property
-    def fly_ensemble(self) -> int:
+    def _cores():
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def fly_ensemble(self) -> int:
         return len(self.end)
 
     @property
@@ -215,6 +220,11 @@ def _wind(wind, duration, flights, seed, response):
     return made, interval, yearly
 
 
+def _cores():
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 def fly_ensemble(
     position,
     velocity,
@@ -250,7 +260,7 @@ def fly_ensemble(
     fixed; or table (k, 7) of `sailviz.steering.table`, its rows held from their times on
     (open loop in time). frame : "orbital" or "meridian", from which the clock counts.
     outputs : times (n,) s, or their number; they then lie where something changes anyway. keep : flights kept whole, at
-    most 1024. levels : per cent. seed : any integer from 0 on. threads : None for one per usable core; they do not
+    most 1024. levels : per cent. seed : an integer from 0 on. threads : None for one per usable core; they do not
     change the result. tolerance : of a position, as a share of the distance from the Sun, see `Ensemble.error`.
     progress : called with the number of flights done.
 
@@ -263,6 +273,8 @@ def fly_ensemble(
         raise ValueError("position and velocity are (3,) each")
     if not (duration > 0 and np.isfinite(duration)) or flights < 1:
         raise ValueError(f"{flights} flights of {duration:g} s are none")
+    if not 0 <= seed < 2**63:
+        raise ValueError(f"a seed is an integer from 0 to 2^63 - 1, not {seed}")
     if frame not in _FRAMES:
         raise ValueError(f"a frame is {' or '.join(_FRAMES)}, not {frame!r}")
     if control[voltage.POWER] > 0 or control[voltage.KIND] == voltage.CONSTANT_POWER:
@@ -312,7 +324,7 @@ def fly_ensemble(
     reference = np.zeros((len(times), SEEN))
     reference[:, :6] = track
     reference[:, 6:] = 1.0, control[voltage.NOMINAL], control[voltage.P_REF]
-    swarm = fly(plan, made, own, reference, flights, threads or len(os.sched_getaffinity(0)), progress)
+    swarm = fly(plan, made, own, reference, flights, threads or _cores(), progress)
     lost = np.flatnonzero(~np.isfinite(swarm.end).all(axis=1))
     if len(lost):
         raise ValueError(

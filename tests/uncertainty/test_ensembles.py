@@ -19,6 +19,7 @@ from sailviz.propagate import control, dop853, dynamics
 from sailviz.propagate.ensemble_draws import normals
 from sailviz.propagate.events import watch
 from sailviz.propulsion.solar_sail import FILMS
+from sailviz.uncertainty.covariance import linear
 from sailviz.uncertainty.ensembles import (
     GivenWind,
     RandomWind,
@@ -275,6 +276,7 @@ ROWS = {
 
 
 def fly_row(transfer, kind, hours, law, reference, maximum, flights=1000):
+    """An Ensemble of one row; kind is that of a RandomWind, or a whole wind without hours."""
     step = transfer.time * TU / len(transfer.pitch)
     word, *numbers = law.split()
     interval = (float(numbers[0]) if word == "pressure" and numbers else 24 if word == "distance" else 1) * step
@@ -282,7 +284,7 @@ def fly_row(transfer, kind, hours, law, reference, maximum, flights=1000):
     row = control.row(
         word, maximum_voltage=1e3 * maximum, reference_pressure=1e-9 * reference, interval=interval, **gains
     )
-    wind = RandomWind(LAW, kind, hours * step)
+    wind = RandomWind(LAW, kind, hours * step) if hours else kind
     return fly_ensemble(
         *CIRCULAR,
         transfer.time * TU,
@@ -323,6 +325,75 @@ def test_monte_carlo_deviations_are_those_of_the_linear_theory(transfers):
         assert misses(found).std(axis=0, ddof=1) == pytest.approx(np.array(theory), rel=0.05)
 
 
+def test_linear_covariance_through_the_ensemble_has_the_tabled_numbers(transfers):
+    """Mars, daily redraw, uncontrolled: shift -.07867 au, 12.370 deg; deviations .02908 au, 6.515 deg, .4964, .4452
+    km/s; Venus: deviations .00845 au, 1.115 deg, .2628, .3403 km/s."""
+    mean, deviation = 0.953210, 0.302309  # of the thrust factor under the gamma law
+    for planet, expected in (("mars", (0.02908, 6.515, 0.4964, 0.4452)), ("venus", (0.00845, 1.115, 0.2628, 0.3403))):
+        transfer = transfers[planet]
+        steps = len(transfer.pitch)
+        duration = transfer.time * TU
+        options = {"interval": 24 * duration / steps, "table": table(transfer), "tolerance": 1e-9}
+        found = linear(
+            lambda factors, options=options, duration=duration: fly_factors(
+                factors, position=CIRCULAR[0], velocity=CIRCULAR[1], duration=duration, **options
+            ),
+            -(-steps // 24),
+            mean,
+            deviation,
+            block=512,
+        )
+        at = [0, 1, 3, 4]
+        units = np.array([1 / AU, 180 / np.pi, 1e-3, 1e-3])
+        # four printed digits
+        assert found.standard_deviation[at] * units == pytest.approx(np.array(expected), rel=1e-3)
+        if planet == "mars":
+            assert found.mean[0] / AU - 1.523679 == pytest.approx(-0.07867, abs=1e-5)
+            assert np.degrees(found.mean[1] - transfer.angle) == pytest.approx(12.370, abs=1e-3)
+
+
+# law, Vmax kV; mean and deviation of dr au and dtheta deg, at Mars in the measured wind
+MEASURED = [
+    ("constant", 40, (-0.06156, 15.03), (0.12829, 24.27)),
+    ("pressure", 40, (-0.00555, 0.79), (0.00483, 0.84)),
+    ("pressure", 30, (-0.03053, 4.54), (0.01720, 3.06)),
+    ("distance 100 50", 40, (-0.00106, 0.29), (0.00159, 0.45)),
+]
+
+
+@pytest.mark.parametrize(("law", "maximum", "mean", "deviation"), MEASURED)
+def test_replayed_wind_misses_mars_as_tabled(transfers, omni, law, maximum, mean, deviation):
+    transfer = transfers["mars"]
+    wind = ReplayedWind(omni.pressure, transfer.time * TU / len(transfer.pitch))
+    found = misses(fly_row(transfer, wind, None, law, 2.0206, maximum, flights=2000))[:, :2]
+    # 1000 windows against 2000; windows overlap, but for both alike
+    assert (np.abs(found.mean(axis=0) - mean) <= 3 * np.sqrt(1.5 / 1000) * np.array(deviation) + [1e-5, 0.01]).all()
+    assert found.std(axis=0) == pytest.approx(np.array(deviation), rel=0.1)
+
+
+def test_brighter_sun_moves_a_solar_sail_as_tabled():
+    """+0.1 % of irradiance for 700 days, 0.5 mm/s2 at 35.26 deg: dr 51 584 km, dtheta -.19555 deg, du -5.550 m/s,
+    dv -1.483 m/s; nominal radius 1.583611 au."""
+    solar = 1360.96
+    found = fly_ensemble(
+        *CIRCULAR,
+        700 * DAY,
+        wind=GivenWind([[1.001 * solar]], np.inf),
+        control=control.row(reference_pressure=solar),
+        flights=1,
+        device="ideal",
+        characteristic_acceleration=0.5e-3,
+        pitch=deg(35.26),
+        tolerance=1e-10,
+    )
+    r, angle, _, u, v, _ = found.miss[0]
+    assert found.nominal[-1, 0] / AU == pytest.approx(1.583611, abs=1e-6)
+    assert r == pytest.approx(51_584e3, rel=1e-3)
+    assert np.degrees(angle) == pytest.approx(-0.19555, rel=1e-3)
+    assert u == pytest.approx(-5.550, rel=1e-3)
+    assert v == pytest.approx(-1.483, rel=1e-3)
+
+
 def test_constant_pressure_spreads_as_by_quadrature(transfers):
     """Mars by quadrature over p: uncontrolled +.1170 +- .5080 au, 22.28 +- 68.49 deg; pressure law -.00878
     +- .04291 au.
@@ -351,6 +422,7 @@ def test_given_factors_end_where_given_pressures_do():
         ({"device": "magsail"}, "eta-perfect"),
         ({"model": "original"}, "falls as 1/r"),
         ({"duration": -1.0}, "are none"),
+        ({"seed": -1}, "from 0"),
         ({"outputs": [5.0, 3.0]}, "must rise"),
         ({"wind": "windy"}, "RandomWind"),
         ({"wind": RandomWind(LAW, "gusty")}, "constant, redrawn, correlated"),

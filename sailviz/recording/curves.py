@@ -1,6 +1,6 @@
 """The curves of a run under /plots; on and off as coloured lanes under /phase.
 
-At most PLOT_ROWS rows are drawn, evenly spaced by their number in the run; the numbers of every row are in the truth.
+About PLOT_ROWS rows are drawn at most, spread over rows and time; the numbers of every row are in the truth.
 """
 
 from __future__ import annotations

@@ -114,12 +114,7 @@ class Ensemble:
     resolution: np.ndarray  # (n, 6) how exactly percentiles are known: a bin's width, 0 for exact ones
 
     @property
-    def _cores():
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-def fly_ensemble(self) -> int:
+    def flights(self) -> int:
         return len(self.end)
 
     @property

@@ -78,15 +78,24 @@ def generator(seed, flight=None, purpose=0) -> np.random.Generator:
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=key)))
 
 
-def history(law: Law, times, seed, kind="redrawn", *, interval=None, correlation_time=CORRELATION_TIME, flight=None):
+def history(law: Law, times, seed, kind="redrawn", *, interval=None, correlation_time=None, flight=None):
     """Pressures (n,) Pa of one flight, each from its time on until the next.
 
     times : (n,) s, rising. seed : int. kind : "constant", one value for all; "redrawn", an independent value for every
     `interval` s counted from times[0] (None: for every time); "correlated", p = F^-1(Phi(z)) with z a stationary
-    Ornstein-Uhlenbeck process, corr(z(t), z(t + d)) = exp(-d / correlation_time). A longer history begins like a
-    shorter one.
+    Ornstein-Uhlenbeck process, corr(z(t), z(t + d)) = exp(-d / correlation_time), s (None: CORRELATION_TIME, 17 h).
+    A longer history begins like a shorter one. ValueError for what a kind does not take.
     """
+    if kind not in KINDS:
+        raise ValueError(f"a pressure history is {', '.join(KINDS)}, not {kind!r}")
+    for name, value, user in (("interval", interval, "redrawn"), ("correlation_time", correlation_time, "correlated")):
+        if value is not None and kind != user:
+            raise ValueError(f"a {kind} history takes no {name}, only a {user} one does")
+        if value is not None and not value > 0:
+            raise ValueError(f"{name} must be positive, not {value:g} s")
     times = np.asarray(times, dtype=float)
+    if times.ndim != 1 or not len(times) or np.any(np.diff(times) <= 0):
+        raise ValueError("the times of a history must be (n,) and rise")
     random = generator(seed, flight)
     if kind == "constant":
         return np.full(len(times), law.sample(random, 1)[0])
@@ -95,11 +104,7 @@ def history(law: Law, times, seed, kind="redrawn", *, interval=None, correlation
             return law.sample(random, len(times))
         turn = np.floor((times - times[0]) / interval * (1 + 1e-12)).astype(int)
         return law.sample(random, turn[-1] + 1)[turn]
-    if kind == "correlated":
-        if not correlation_time > 0:
-            raise ValueError(f"the correlation time must be positive, not {correlation_time:g} s")
-        return law.from_normal(relaxing_normals(times, random, correlation_time))
-    raise ValueError(f"a pressure history is {', '.join(KINDS)}, not {kind!r}")
+    return law.from_normal(relaxing_normals(times, random, correlation_time or CORRELATION_TIME))
 
 
 def relaxing_normals(times, random, correlation_time):

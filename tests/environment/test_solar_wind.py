@@ -301,3 +301,11 @@ def test_laws_with_impossible_parameters_are_refused():
         solar_wind.history(named("inverse-gaussian", **EXAMPLES["inverse-gaussian"][0]), np.arange(3.0), 1)
     with pytest.raises(ValueError, match="constant, redrawn, correlated"):
         solar_wind.history(LAW, np.arange(3.0), 1, "breezy")
+    for options, words in (
+        ({"kind": "correlated", "interval": DAY}, "takes no interval, only a redrawn"),
+        ({"correlation_time": DAY}, "takes no correlation_time, only a correlated"),
+        ({"interval": 0.0}, "interval must be positive"),
+        ({"times": np.zeros(3)}, "and rise"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            solar_wind.history(LAW, **({"times": np.arange(3.0), "seed": 1} | options))

@@ -14,7 +14,7 @@ from scipy import stats
 from sailviz import steering
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN
 from sailviz.design.smoothed_transfer import smoothed_transfer
-from sailviz.environment.wind_laws import Gamma
+from sailviz.environment.wind_laws import Gamma, Lognormal
 from sailviz.propagate import control, dop853, dynamics
 from sailviz.propagate.ensemble_draws import normals
 from sailviz.propagate.events import watch
@@ -181,6 +181,7 @@ def test_statistics_over_time_are_those_of_the_flights():
     assert found.saturated[5:] == pytest.approx(expected, abs=4 * np.sqrt(expected / 4000))
     assert found.pressure.mean[5:] == pytest.approx(SHAPE * SCALE, rel=4 * SHAPE**-0.5 / 4000**0.5)
     assert found.voltage.kept.shape == (200, 40)
+    assert found.flights == 4000
 
 
 def test_recorded_flights_agree_with_their_statistics():
@@ -212,6 +213,17 @@ def test_drawn_pressures_follow_their_law_and_forget_as_told():
     assert stats.kstest(p[:, ::100].ravel(), law.cdf).pvalue > 0.01
     z = stats.norm.ppf(law.cdf(p))
     assert np.mean(z[:, 17:] * z[:, :-17]) == pytest.approx(np.exp(-1), abs=0.01)
+
+
+def test_yearly_factor_is_lognormal_and_new_every_year():
+    wind = RandomWind(Lognormal(1e-6, 2e-9), "redrawn", 10 * DAY, yearly_deviation=0.175)
+    found = fly_ensemble(
+        *CIRCULAR, 800 * DAY, wind=wind, control=control.row(), flights=1000, keep=1000, outputs=81
+    ).pressure.kept[:, :-1]
+    level = np.log(found / 2e-9)
+    assert level.std(axis=0) == pytest.approx(0.175, rel=3 / np.sqrt(2 * 1000))
+    assert np.abs(np.diff(level[:, :37], axis=1)).max() < 1e-4  # days 0 to 360: one year
+    assert abs(np.corrcoef(level[:, 30], level[:, 40])[0, 1]) < 0.1
 
 
 def test_replay_starts_anywhere_and_never_wraps():

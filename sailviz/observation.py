@@ -10,7 +10,7 @@ from sailviz import steering as law
 from sailviz.constants import ATOMIC_MASS, J2_EARTH, RADIUS_EARTH
 from sailviz.plan import Plan, epoch_of
 from sailviz.plan_low_orbit import watches_shadow
-from sailviz.propagate import dynamics
+from sailviz.propagate import control_plug, dynamics, row
 from sailviz.propagate import low_orbit as seen
 from sailviz.propagate.primer_laws import observe_primer
 from sailviz.propulsion.plasma_brake import validity
@@ -31,6 +31,14 @@ def observe(p: Plan, time, states, factor):
             acceleration = acceleration + (factor / states[6] * force).T
             normal = values[seen.TETHER_X : seen.TETHER_X + 3].T.copy()
     return normal, acceleration, throttle, columns
+
+
+def voltages(model) -> np.ndarray:
+    """Voltages (k,) V that a run's controller has set at its breaks, so far."""
+    p = model.parameters
+    first = int(p[row.CONTROL_TABLE])
+    last = int(p[row.CONTROL_LAW])
+    return p[first:last].reshape(-1, control_plug.COLUMNS)[:, control_plug.VOLTAGE]
 
 
 def low_orbit_columns(p: Plan, time, states, values) -> dict[str, np.ndarray]:
@@ -66,7 +74,7 @@ def _brake_columns(scene, values, velocity):
     columns |= {
         "plasma_density_per_m3": density,
         "mean_ion_mass_u": ion_mass / ATOMIC_MASS,
-        "tether_voltage_V": voltage,
+        "tether_voltage_V": voltage if scene.device.polarity == "positive" else -voltage,
         "tether_current_A": values[seen.CURRENT],
         "tether_power_W": values[seen.POWER],
     }

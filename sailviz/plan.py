@@ -26,11 +26,10 @@ from sailviz.constants import (
 )
 from sailviz.design import displaced, spirals
 from sailviz.design.holding import Track
-from sailviz.environment import solar_wind
 from sailviz.environment.sun import sun_parameters
 from sailviz.errors import Fault, SceneError
 from sailviz.plan_low_orbit import brake_device, low_orbit_parts
-from sailviz.propagate import dynamics
+from sailviz.propagate import dop853, dynamics
 from sailviz.propagate import events as happening
 from sailviz.propagate.plugs import user_address
 from sailviz.propulsion import electric_sail
@@ -39,6 +38,7 @@ from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.run import Body
 from sailviz.scene import Scene
 from sailviz.scene_sections import HELD_STARTS
+from sailviz.schedule import Schedule, schedule
 
 if TYPE_CHECKING:
     from sailviz.first_order import FirstOrder
@@ -60,10 +60,7 @@ class Plan:
     velocity: np.ndarray  # (3,) m/s
     mass: float  # kg
     model: dynamics.Model
-    breaks: np.ndarray  # (k,) s, where the thrust factor or its table has a kink
-    factors: np.ndarray  # (k,) thrust factor from each break on
-    pressure: np.ndarray | None  # (k,) Pa at 1 au from each break on, where the wind is random
-    switches: tuple[tuple[float, str], ...]  # (time s, "thrust on" | "thrust off")
+    schedule: Schedule  # of the thrust factor
     watch: happening.Watch
     names: tuple[str, ...]  # of the watched events
     design: object | None  # the design's result for starts that ask for one
@@ -89,10 +86,9 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
     if force is not None:
         user_force, handle = user_address(force, "force")
         keep.append(handle)
-    breaks, factors, pressure, switches = _schedule(scene, table)
+    when = schedule(scene, table)
     names, watch = _watched(scene, body)
-    model = dynamics.model(
-        body.mu,
+    parts = dict(
         device=device,
         device_parameters=device_parameters,
         steering=law_id,
@@ -106,6 +102,12 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
         **_primer_law(scene, law_id, device, device_parameters),
         **low_orbit_parts(scene, body, epoch_of(scene)),
     )
+
+    def nominal(times):
+        on = when.lines[:, 6]
+        return _flight(dynamics.model(body.mu, **parts), position, velocity, when.breaks, on, times)
+
+    model = dynamics.model(body.mu, **parts, **_controlled(scene, when, nominal))
     return Plan(
         scene,
         body,
@@ -113,10 +115,7 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
         velocity,
         scene.device.mass or 1.0,
         model,
-        breaks,
-        factors,
-        pressure,
-        switches,
+        when,
         watch,
         names,
         design,
@@ -380,33 +379,28 @@ def third_body(scene):
     return third.mu, third.radius, np.sqrt(MU_SUN / third.radius**3), third.azimuth
 
 
-def _schedule(scene, table):
-    """(breaks, factors, pressure or None, switches): the piecewise-constant thrust factor of the whole run."""
-    duration = scene.propagation.duration
-    wind = scene.environment.solar_wind
-    wind_times, wind_factors, pressures = np.zeros(1), np.ones(1), None
-    if wind.kind == "gamma":
-        wind_times, pressures = solar_wind.gamma_pressure(wind.shape, wind.scale, wind.redraw, duration, wind.seed)
-        reference = solar_wind.reference_pressure(wind.shape, wind.scale, wind.reference == "unbiased")
-        wind_factors = solar_wind.thrust_factor(pressures, reference)
-    intervals = scene.device.active
-    edges = [edge for pair in intervals or [] for edge in pair]
-    smooth = table is None or getattr(scene.steering, "interpolation", "cubic") == "cubic"
-    knots = [] if smooth else table[:, 0]
-    breaks = np.unique(np.concatenate([[0.0], wind_times, edges, knots]))
-    breaks = breaks[(breaks >= 0) & (breaks < duration)]
-    drawn = np.searchsorted(wind_times, breaks, side="right") - 1
-    on = np.ones(len(breaks), dtype=bool)
-    if intervals is not None:
-        on = np.array([any(a <= t < b for a, b in intervals) for t in breaks])
-    switches = tuple(
-        (time, word)
-        for pair in intervals or []
-        for time, word in zip(pair, ("thrust on", "thrust off"), strict=True)
-        if 0 < time <= duration
-    )
-    pressure = None if pressures is None else pressures[drawn]
-    return breaks, wind_factors[drawn] * on, pressure, switches
+def _controlled(scene, when: Schedule, nominal):
+    """Keywords of `dynamics.model` for a voltage controller, its reference flight filled in. nominal : the same flight
+    without wind, times (k,) -> states (6, k)."""
+    if when.law is None:
+        return {}
+    from sailviz.propagate.control_plug import R_REF, U_REF, factor_plug
+
+    lines = when.lines.copy()
+    if scene.start.kind in ("displaced", "heliostationary", "lagrange-point"):
+        lines[:, R_REF] = scene.start.radius
+    elif scene.device.control.kind == "distance":
+        states = nominal(when.breaks)
+        r = np.linalg.norm(states[:3], axis=0)
+        lines[:, R_REF], lines[:, U_REF] = r, np.sum(states[:3] * states[3:], axis=0) / r
+    return {"control": factor_plug(), "control_table": lines, "control_law": when.law}
+
+
+def _flight(model, position, velocity, breaks, factors, times):
+    """States (6, n) at times (n,) s of a flight without events."""
+    state, out = dop853.start(0.0, position, velocity, 1.0), np.empty((6, len(times)))
+    dop853.advance(state, model, breaks, factors, happening.watch([]), times, out, times[-1], 1e-12, np.inf)
+    return out
 
 
 _SENSE = {"up": 1, "down": -1, "both": 0}
@@ -419,7 +413,9 @@ def _watched(scene, body):
         sense = _SENSE[event.sense]
         kind = {"radius": happening.RADIUS, "altitude": happening.RADIUS, "node": happening.NODE}.get(event.kind)
         level = event.radius or (body.radius + event.altitude if event.altitude else 0.0)
-        if event.kind == "escape":
+        if event.kind == "mean-altitude":
+            kind = happening.MEAN_AXIS if scene.environment.j2 else happening.AXIS
+        elif event.kind == "escape":
             kind, sense = happening.ENERGY, 1
         elif event.kind in ("periapsis", "apoapsis"):
             kind, sense = happening.APSIS, 1 if event.kind == "periapsis" else -1

@@ -67,8 +67,16 @@ def conflicts(scene: Scene) -> list[tuple[str, str]]:
         found.append(("start.altitude", "the body has no radius to measure an altitude from"))
     if scene.environment.solar_wind.kind != "steady" and device.kind != "electric-sail":
         found.append(("environment.solar_wind", "the solar wind acts on an electric sail only"))
-    if scene.environment.solar_wind.kind == "gamma" and duration / scene.environment.solar_wind.redraw > 1e7:
+    wind = scene.environment.solar_wind
+    if duration / getattr(wind, "redraw", duration) > 1e7:
         found.append(("environment.solar_wind.redraw", "more than ten million draws in one run"))
+    if scene.environment.irradiance.kind != "steady" and device.kind != "solar-sail":
+        found.append(("environment.irradiance", "irradiance that varies acts on a solar sail only"))
+    control = getattr(device, "control", None)
+    if control is not None and control.kind == "electrochromic" and scene.environment.irradiance.kind == "steady":
+        found.append(("device.control", "in steady sunlight there is nothing to control"))
+    if duration / getattr(control, "interval", duration) > 1e7:
+        found.append(("device.control.interval", "more than ten million updates in one run"))
     if scene.epoch is not None and not 1700 <= scene.epoch.year <= 2262 - duration / 3.15576e7:
         found.append(("epoch", "the run must lie between the years 1700 and 2262, what 64 bits of nanoseconds reach"))
     found += _around_the_earth(scene)

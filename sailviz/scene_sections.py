@@ -5,6 +5,7 @@ Imports neither rerun nor numba nor scipy, so that `sailviz check` answers at on
 
 from __future__ import annotations
 
+from datetime import date, datetime
 from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -249,6 +250,44 @@ class Device(Section):
         return self
 
 
+class VoltageControl(Section):
+    """How an electric sail sets its voltage, at the start of every interval."""
+
+    nominal_voltage: Annotated[Voltage, POSITIVE] = 20_000.0
+    maximum_voltage: Annotated[Voltage, POSITIVE] = 40_000.0
+    minimum_voltage: Annotated[Voltage, Field(ge=0)] = 0.0
+    dead_band: Annotated[Voltage, Field(ge=0)] = 0.0
+
+    @model_validator(mode="after")
+    def _rises(self):
+        if not self.minimum_voltage <= self.nominal_voltage <= self.maximum_voltage:
+            raise _wrong("voltages must rise from minimum_voltage over nominal_voltage to maximum_voltage")
+        return self
+
+
+class PressureControl(VoltageControl):
+    """Against the measured dynamic pressure."""
+
+    kind: Literal["pressure"]
+    interval: Annotated[Time, POSITIVE] = 3600.0
+
+
+class DistanceControl(VoltageControl):
+    """Back to the distance and radial speed of the flight in the nominal wind."""
+
+    kind: Literal["distance"]
+    interval: Annotated[Time, POSITIVE] = 86_400.0
+    position_gain: Annotated[float, Field(ge=0)] = 100.0
+    speed_gain: Annotated[float, Field(ge=0)] = 50.0
+
+
+class ElectrochromicControl(Section):
+    """A share of a solar sail's area turns from mirror to black so that the push stays that of the dimmest Sun."""
+
+    kind: Literal["electrochromic"]
+    fraction: Annotated[float, Field(gt=0, le=1)] = 0.007
+
+
 class SolarSail(Device):
     """A flat solar sail. Its strength: characteristic acceleration, lightness number, or area with mass."""
 
@@ -257,6 +296,7 @@ class SolarSail(Device):
     characteristic_acceleration: Annotated[Acceleration, POSITIVE] | DESIGNED | None = None
     lightness_number: Annotated[float, POSITIVE] | None = None
     area: Annotated[Area, POSITIVE] | None = None
+    control: ElectrochromicControl | None = None
 
     @model_validator(mode="after")
     def _strength(self):
@@ -276,12 +316,15 @@ class ElectricSail(Device):
     wind_pressure: Annotated[Pressure, POSITIVE] = 2.0e-9
     wind_potential: Annotated[Voltage, Field(ge=0)] = 1_000.0
     pitch_limit: Annotated[Angle, Field(gt=0, le=1.5707963267948968)] = 1.0471975511965976
+    control: Annotated[PressureControl | DistanceControl, Field(discriminator="kind")] | None = None
 
     @model_validator(mode="after")
     def _strength(self):
         _one_of(self, "characteristic_acceleration", "tethers+tether_length+voltage+mass")
         if self.voltage is not None and self.voltage <= self.wind_potential:
             raise _wrong("voltage must exceed wind_potential, or there is no thrust")
+        if self.control is not None and self.control.nominal_voltage <= self.wind_potential:
+            raise _wrong("control.nominal_voltage must exceed wind_potential, or there is no thrust")
         return self
 
 
@@ -460,21 +503,89 @@ PRIMER_LAWS = ("optimal", "locally-optimal", "lyapunov")
 
 
 # ---------------------------------------------------------------- what surrounds it
-class GammaWind(Section):
-    """Solar-wind dynamic pressure redrawn from a gamma distribution, independently, every interval."""
+class DrawnWind(Section):
+    """Solar-wind dynamic pressure at 1 au drawn from a law: independent every `redraw`, correlated, or one value for
+    the whole flight. reference : the pressure of nominal thrust, the law's mean, or what leaves the mean thrust
+    nominal."""
+
+    variation: Literal["redrawn", "correlated", "constant"] = "redrawn"
+    redraw: Annotated[Time, POSITIVE] = 86_400.0
+    correlation_time: Annotated[Time, POSITIVE] = 61_200.0
+    yearly_deviation: Annotated[float, Field(ge=0, le=1)] = 0.0
+    seed: Annotated[int, Field(ge=0)]
+    reference: Literal["mean", "unbiased"] = "mean"
+
+
+class GammaWind(DrawnWind):
+    """The thesis' law."""
 
     kind: Literal["gamma"]
     shape: Annotated[float, POSITIVE]
     scale: Annotated[Pressure, POSITIVE]
-    redraw: Annotated[Time, POSITIVE]
-    seed: Annotated[int, Field(ge=0)]
+
+
+class LognormalWind(DrawnWind):
+    """Fits the measured pressures better: scale is the median, sigma that of ln p."""
+
+    kind: Literal["lognormal"]
+    sigma: Annotated[float, POSITIVE]
+    scale: Annotated[Pressure, POSITIVE]
+
+
+class BurrWind(DrawnWind):
+    """Burr XII, which fits the measured pressures best."""
+
+    kind: Literal["burr"]
+    c: Annotated[float, POSITIVE]
+    d: Annotated[float, POSITIVE]
+    scale: Annotated[Pressure, POSITIVE]
+
+    @model_validator(mode="after")
+    def _mean_exists(self):
+        if self.c * self.d <= 1:
+            raise _wrong("with c d not above 1 this law has no mean pressure")
+        return self
+
+
+class ReplayedWind(Section):
+    """A measured series: OMNI2 hourly text, npz, CSV or parquet. It begins at `start`, or at a place drawn with the
+    seed; impossible values are an error unless `repair` says to fill and count them."""
+
+    kind: Literal["replay"]
+    file: str
+    start: datetime | date | None = None
+    seed: Annotated[int, Field(ge=0)] | None = None
     reference: Literal["mean", "unbiased"] = "mean"
+    potential: Literal["fixed", "from speed"] = "fixed"
+    repair: bool = False
+
+    @model_validator(mode="after")
+    def _begins(self):
+        _one_of(self, "start", "seed")
+        return self
 
 
 class SteadyWind(Section):
     """The nominal wind."""
 
     kind: Literal["steady"]
+
+
+class SteadyIrradiance(Section):
+    """Sunlight as at the mean."""
+
+    kind: Literal["steady"]
+
+
+class CyclicIrradiance(Section):
+    """Sunlight with its 11-year cycle (by the epoch, else from a maximum on) and a daily flicker drawn with the seed;
+    both as shares of the mean."""
+
+    kind: Literal["cycle"]
+    amplitude: Annotated[float, Field(ge=0, lt=0.1)] = 3.6e-4
+    flicker: Annotated[float, Field(ge=0, lt=0.1)] = 2.454e-4
+    redraw: Annotated[Time, POSITIVE] = 86_400.0
+    seed: Annotated[int, Field(ge=0)] = 0
 
 
 class ForceProfile(Section):
@@ -533,7 +644,12 @@ class ThirdBody(Section):
 class Environment(Section):
     """Everything around the craft but the point mass it orbits."""
 
-    solar_wind: Annotated[SteadyWind | GammaWind, Field(discriminator="kind")] = SteadyWind(kind="steady")
+    solar_wind: Annotated[
+        SteadyWind | GammaWind | LognormalWind | BurrWind | ReplayedWind, Field(discriminator="kind")
+    ] = SteadyWind(kind="steady")
+    irradiance: Annotated[SteadyIrradiance | CyclicIrradiance, Field(discriminator="kind")] = SteadyIrradiance(
+        kind="steady"
+    )
     ionosphere: Annotated[ForceProfile | DensityProfile | IonosphereTable, Field(discriminator="kind")] | None = None
     atmosphere: Annotated[ExponentialAtmosphere | MsisAtmosphere, Field(discriminator="kind")] | None = None
     solar_flux: Annotated[SolarFlux, POSITIVE] | Literal["cycle"] | None = None

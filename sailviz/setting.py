@@ -154,7 +154,7 @@ def _farthest(p: Plan) -> float:
     times = np.linspace(0.0, p.scene.propagation.duration, 256)
     out = np.empty((6, len(times)))
     state = dop853.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
-    dop853.advance(state, p.model, p.breaks, p.factors, p.watch, times, out, times[-1], 1e-7, np.inf)
+    dop853.advance(state, p.model, p.schedule.breaks, p.schedule.factors, p.watch, times, out, times[-1], 1e-7, np.inf)
     return float(np.linalg.norm(out[:3, : dop853.rows_done(state)], axis=0).max())
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from sailviz import elements as orbital
 from sailviz import frames
 from sailviz.errors import PropagationError
-from sailviz.observation import observe
+from sailviz.observation import observe, voltages
 from sailviz.plan import Plan, plan
 from sailviz.propagate import dop853, dynamics
 from sailviz.run import Attitude, Event, Run, Thrust, join
@@ -85,7 +85,7 @@ def _blocks(p: Plan, block_rows, progress):
     state = dop853.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
     setting = None
     off_time = np.inf
-    switches = list(p.switches)
+    switches = list(p.schedule.switches)
     for first in range(0, rows, block_rows):
         count = min(block_rows, rows - first)
         times = output.between(first, count)
@@ -141,8 +141,8 @@ def _fill(p: Plan, state, times, switches, output_rows, progress):
             status = dop853.advance(
                 state,
                 p.model,
-                p.breaks,
-                p.factors,
+                p.schedule.breaks,
+                p.schedule.factors,
                 p.watch,
                 part,
                 chunk,
@@ -175,8 +175,8 @@ def _fill(p: Plan, state, times, switches, output_rows, progress):
 
 def _observed(p: Plan, time, states, first, off_time) -> Run:
     """Everything that is derived from states row by row. off_time: s, when the device was switched off for good."""
-    interval = np.searchsorted(p.breaks, time, side="right") - 1
-    factor = np.where(time < off_time, p.factors[interval], 0.0)
+    interval = np.searchsorted(p.schedule.breaks, time, side="right") - 1
+    factor = np.where(time < off_time, p.schedule.factors[interval], 0.0)
     states = np.ascontiguousarray(states)
     normal, acceleration, throttle, columns = observe(p, time, states, factor)
     position, velocity = states[:3].T.copy(), states[3:6].T.copy()
@@ -186,10 +186,11 @@ def _observed(p: Plan, time, states, first, off_time) -> Run:
     on = (factor * throttle != 0) & (p.model.device != dynamics.NO_DEVICE)
     thrust = Thrust(acceleration, frames.to_frame(axes, acceleration), np.linalg.norm(acceleration, axis=1), on)
     environment = {}
-    if len(p.breaks) > 1 or p.scene.device.active is not None:
+    if len(p.schedule.breaks) > 1 or p.scene.device.active is not None:
         environment["thrust_factor"] = factor
-    if p.pressure is not None:
-        environment["solar_wind_pressure_Pa"] = p.pressure[interval]
+    environment |= {name: values[interval] for name, values in p.schedule.histories.items()}
+    if p.schedule.law is not None:
+        environment["thrust_voltage_V"] = voltages(p.model)[interval]
     environment |= columns
     return Run(
         None,

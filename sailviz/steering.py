@@ -20,6 +20,8 @@ LAWS = {
     "radial": RADIAL,
     "sun-facing": RADIAL,
     "vertical": RADIAL,
+    "gravity-gradient": RADIAL,  # and the brake leans from there
+    "spinning": RADIAL,
     "orbital": ORBITAL,
     "meridian": MERIDIAN,
     "circumferential": TRANSVERSE,

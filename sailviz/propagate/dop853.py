@@ -37,6 +37,7 @@ from sailviz.propagate.integration import (
     Integration,
     W,
     Y,
+    factor_from,
     fill,
     happenings,
     surface_met,
@@ -290,6 +291,7 @@ def advance_compiled(
         r = np.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
         while count[INTERVAL] + 1 < len(breaks) and breaks[count[INTERVAL] + 1] <= clock[TIME]:
             count[INTERVAL] += 1
+        factor_from(clock[TIME], y, factors, count[INTERVAL], model)
         derivative(clock[TIME], y, factors[count[INTERVAL]], model, k[0])
         speed = np.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5])
         dynamical = r / max(speed, np.sqrt(mu / r))
@@ -351,7 +353,7 @@ def advance_compiled(
         new_factor = factor
         if t == limit and limit < t_end and interval + 1 < len(breaks):
             interval += 1
-            new_factor = factors[interval]
+            new_factor = factor_from(t, new, factors, interval, model)
         new_factor = new_factor * count[IN_USE]
         if stop_x < 2.0 or new_factor != factor or (t == limit and limit < t_end):
             factor = new_factor

@@ -21,6 +21,9 @@ from sailviz.propagate.row import (
     AIR,
     AIR_TABLE,
     BRAKE,
+    CONTROL,
+    CONTROL_LAW,
+    CONTROL_TABLE,
     DEVICE,
     EXPONENTIAL_AIR,
     FLUX,
@@ -89,6 +92,9 @@ def model(
     low_orbit=0,
     primer_law=0,
     primer_kind=0,
+    control=0,
+    control_table=None,
+    control_law=None,
     user_steering=0,
     user_force=0,
 ) -> Model:
@@ -103,14 +109,15 @@ def model(
         row[start : start + len(values)] = values
     row[USER_STEERING], row[USER_FORCE], row[INTERPOLATION] = user_steering, user_force, interpolation
     row[SHADOW], row[HEIGHT], row[LOW_ORBIT] = shadow, height, low_orbit
-    row[PRIMER_LAW], row[PRIMER_KIND] = primer_law, primer_kind
+    row[PRIMER_LAW], row[PRIMER_KIND], row[CONTROL] = primer_law, primer_kind, control
     if table is not None:
         row[ROWS] = len(table)
         row = np.concatenate([row, np.asarray(table, dtype=float).ravel()])
-    for place, values in ((AIR_TABLE, air_table), (PLASMA_TABLE, plasma_table)):
+    tables = ((AIR_TABLE, air_table), (PLASMA_TABLE, plasma_table), (CONTROL_TABLE, control_table))
+    for place, values in (*tables, (CONTROL_LAW, control_law)):
         if values is not None:
             row[place] = len(row)
-            row = np.concatenate([row, values])
+            row = np.concatenate([row, np.ravel(values)])
     return Model(int(device), int(steering), row)
 
 

@@ -7,16 +7,18 @@ from typing import NamedTuple
 import numpy as np
 
 from sailviz.compiled import inlined
+from sailviz.constants import J2_EARTH, RADIUS_EARTH
 
-RADIUS, APSIS, ENERGY, NODE = range(4)
+RADIUS, APSIS, ENERGY, NODE, AXIS, MEAN_AXIS = range(6)
+OBLATENESS_EARTH = J2_EARTH * RADIUS_EARTH**2  # m2
 RECORD, STOP, END_OF_USE = range(3)
 
 
 class Watch(NamedTuple):
     """The events of one propagation, k of them; all arrays (k,)."""
 
-    kind: np.ndarray  # int64: RADIUS, APSIS, ENERGY, NODE
-    level: np.ndarray  # float64: distance from the centre in m for RADIUS, else unused
+    kind: np.ndarray  # int64: RADIUS, APSIS, ENERGY, NODE, AXIS, MEAN_AXIS
+    level: np.ndarray  # float64: distance from the centre in m for RADIUS, semi-major axis in m, else unused
     sense: np.ndarray  # int64: +1 rising only, -1 falling only, 0 both
     action: np.ndarray  # int64: RECORD, STOP the propagation, END_OF_USE of the device from here on
 
@@ -44,4 +46,16 @@ def measure(kind, level, y, mu):
     r = np.sqrt(x * x + yy * yy + z * z)
     if kind == ENERGY:
         return 0.5 * (vx * vx + vy * vy + vz * vz) - mu / r
-    return r - level
+    if kind == RADIUS:
+        return r - level
+    v2 = vx * vx + vy * vy + vz * vz
+    a = 1.0 / (2.0 / r - v2 / mu)
+    if kind == AXIS:
+        return a - level
+    # less what the Earth's oblateness does to it within a revolution: elements.mean_semi_major_axis
+    hz, radial = x * vy - yy * vx, x * vx + yy * vy + z * vz
+    h2 = r * r * v2 - radial * radial
+    near, s = a / r, z / r
+    swing = near * near * near * (1.0 - 3.0 * s * s)
+    swing -= (1.0 - 1.5 * (1.0 - hz * hz / h2)) * (mu * a / h2) ** 1.5
+    return a - OBLATENESS_EARTH / a * swing - level

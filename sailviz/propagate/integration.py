@@ -13,6 +13,8 @@ import numpy as np
 from sailviz.compiled import compiled, inlined
 from sailviz.propagate.dynamics import SIZE
 from sailviz.propagate.events import APSIS, END_OF_USE, RADIUS, STOP, measure
+from sailviz.propagate.plugs import plugged
+from sailviz.propagate.row import CONTROL
 
 EVENT_SAMPLES = 4  # at most per step, so that two crossings inside one step are seen
 MOST_EVENTS = 4096  # recorded between two calls, and then those of one more step
@@ -74,6 +76,17 @@ def rows_done(s) -> int:
 def statistics(s) -> tuple[int, int]:
     """Accepted and rejected steps so far."""
     return int(s.count[STEPS]), int(s.count[REJECTED])
+
+
+@inlined
+def factor_from(t, y, factors, interval, model):
+    """Thrust factor from the break of this number on; a voltage controller, if there is one, sets it now, seeing the
+    state y."""
+    p = model.parameters
+    if p[CONTROL] != 0.0:
+        set_now = plugged(int(p[CONTROL]), t, y[0], y[1], y[2], y[3], y[4], y[5], y[6], p, float(interval))
+        factors[interval] = set_now[0]
+    return factors[interval]
 
 
 @inlined

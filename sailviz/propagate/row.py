@@ -25,6 +25,7 @@ BRAKE = 54  # ten numbers of the plasma brake, places below
 STEER_AS = 64  # the sail for which a primer law steers: its kind, then up to four numbers as from DEVICE on
 PRIMER_KIND = 69  # which law of steering.py makes the primer
 LOW_ORBIT, PRIMER_LAW = 70, 71  # addresses of plugs, 0 for none: the forces of low_orbit.py, primer_laws.py
+CONTROL, CONTROL_TABLE, CONTROL_LAW = 72, 73, 74  # plug of the voltage control, and where its table and law begin
 TABLE = 80
 
 NO_AIR, EXPONENTIAL_AIR, TABLED_AIR = range(3)

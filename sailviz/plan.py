@@ -76,7 +76,7 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
     design = _design(scene)
     position, velocity = _initial_state(scene, body, design)
     device, device_parameters = _device(scene, design)
-    law_id, law_parameters, table, interpolation = _steering(scene, design)
+    law_id, law_parameters, table, interpolation = _steering(scene, design, position, velocity)
     keep = []
     user_steering = user_force = 0
     if steering is not None:
@@ -280,6 +280,13 @@ def _node(scene) -> float:
     return float(np.remainder(sun[0] + 2 * np.pi * (start.ltan / DAY - 0.5), 2 * np.pi))
 
 
+def _sail_name(scene):
+    """The scene's sail as design functions take it: a Film, or the name of an E-sail model."""
+    if scene.device.kind == "solar-sail":
+        return _film(scene)
+    return "electric-sail" if scene.device.model == "final" else f"electric-sail-{scene.device.model}"
+
+
 def sail_strength(scene, design) -> float:
     """Characteristic acceleration, m/s2, of either sail."""
     device = scene.device
@@ -323,7 +330,7 @@ def _device(scene, design):
     return dynamics.NO_DEVICE, ()
 
 
-def _steering(scene, design):
+def _steering(scene, design, position, velocity):
     """(id, parameters, table or None, interpolation) for the right-hand side."""
     steering = scene.steering
     plain = (None, law.LINEAR)
@@ -340,6 +347,16 @@ def _steering(scene, design):
         table = law.table(steering.time, steering.pitch, steering.clock, steering.throttle, steering.interpolation)
         kind = law.TABLE_ORBITAL if steering.frame == "orbital" else law.TABLE_MERIDIAN
         return kind, (), table, law.INTERPOLATIONS[steering.interpolation]
+    if steering.kind == "optimal":
+        from sailviz.optimal_flight import primer_table
+
+        sail_of_law = steering.reckons_with or _sail_name(scene)
+        return (
+            law.PRIMER,
+            (),
+            primer_table(scene, position, velocity, sail_of_law, sail_strength(scene, design)),
+            law.CUBIC,
+        )
     if steering.kind == "locally-optimal":
         return law.LOCAL, (primers.GOALS[steering.goal], 1.0 if steering.sense == "increase" else -1.0), *plain
     if steering.kind == "lyapunov":

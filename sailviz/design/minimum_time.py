@@ -17,6 +17,8 @@ from sailviz.design import costates as state_costate
 from sailviz.design.costates import Sail, canonical_sail
 from sailviz.design.minimum_time_problems import BetweenEllipses, ToCircle, hamiltonians, polar
 from sailviz.design.minimum_time_search import Extremal, Search, follow, search, spiral_time
+from sailviz.design.rendezvous import rendezvous  # noqa: F401  part of this module's face
+from sailviz.design.transfers import orbit_to_orbit  # noqa: F401
 from sailviz.optimal_steering import optimal_pitch
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film

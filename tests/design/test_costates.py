@@ -17,7 +17,7 @@ SAILS = ("ideal", "jpl-1978", "jpl-2015", "eta-perfect", "electric-sail")
 SAILS += ("electric-sail-original", "electric-sail-updated", "electric-sail-polynomial")
 J = np.block([[np.zeros((6, 6)), np.eye(6)], [-np.eye(6), np.zeros((6, 6))]])
 
-# flight times in days, initial costates (lam_r, lam_u, lam_v) with H = 1 and target radii of table 2.1
+# flight times in days, initial costates (lam_r, lam_u, lam_v) with H = 1 and target radii
 NAMES = {"ideal": "ideal", "JPL2015": "jpl-2015", "JPL1978": "jpl-1978", "Huo": "electric-sail"}
 NAMES["Orig30"] = "electric-sail-updated"
 RADII = {"Mars": 1.52366231, "Venus": 0.72333199, "Mercury": 0.38709893}

@@ -1,0 +1,172 @@
+"""A solved minimum-time flight as data to fly it again: the primer in time, or a table of attitudes.
+
+With the primer the sail is steered optimally at the craft's present place, and the flight repeats itself to the
+accuracy of the integration. A table of pitch and clock angles is what a mission would load; read linearly, it is good
+to the error asked for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from sailviz import frames
+from sailviz.constants import AU
+from sailviz.design import costates
+from sailviz.design.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
+from sailviz.optimal_steering import optimal_pitch
+
+FEWEST, MOST = 200, 200_000  # rows of a grid that is halved until it is fine enough
+BESIDE = 1e-9  # of the flight, from a switch to where its two sides are read
+
+
+@dataclass(frozen=True)
+class Solved:
+    """What a flight starts from: position m and velocity m/s (3,), costates (6,) in units of mu = 1 and one au, time s,
+    device, characteristic_acceleration m/s2. `OrbitTransfer` and `Rendezvous` have the same fields."""
+
+    position: np.ndarray
+    velocity: np.ndarray
+    costates: np.ndarray
+    time: float
+    device: object
+    characteristic_acceleration: float
+
+
+def from_planar(start, radius, time, device, characteristic_acceleration) -> Solved:
+    """A Solved from state and costates (12,) in units of mu = 1 and a radius in m, as of circle-to-circle flights."""
+    a, start = radius / AU, np.asarray(start, dtype=float)
+    position, velocity = start[:3] * radius, start[3:6] * SPEED_UNIT / np.sqrt(a)
+    lam = np.concatenate([start[6:9] * np.sqrt(a), start[9:] * a**2])  # -d time / d (position, velocity)
+    return Solved(position, velocity, lam, float(time), device, float(characteristic_acceleration))
+
+
+@dataclass(frozen=True)
+class PrimerHistory:
+    """The primer in time, for Hermite's cubic: time (n,) s; primer (n, 3) in s per m/s, what a push of the velocity
+    saves of the flight time, inertial; rate (n, 3) per s; error, largest angle in rad between cubic and primer,
+    measured between the rows. position m and velocity m/s (3,) at the start; switches (k,) s."""
+
+    time: np.ndarray
+    primer: np.ndarray
+    rate: np.ndarray
+    error: float
+    position: np.ndarray
+    velocity: np.ndarray
+    switches: np.ndarray
+
+
+@dataclass(frozen=True)
+class SteeringTable:
+    """Attitudes in time, to be read linearly: time (n,) s, pitch and clock (n,) rad in the orbital frame, throttle
+    (n,) 1 or 0. Two rows at each of the switches (k,) s: before and after. error, largest angle in rad between the
+    normal read and the optimal one, midway between rows. position m and velocity m/s (3,) at the start."""
+
+    time: np.ndarray
+    pitch: np.ndarray
+    clock: np.ndarray
+    throttle: np.ndarray
+    error: float
+    position: np.ndarray
+    velocity: np.ndarray
+    switches: np.ndarray
+
+
+def _fly(solved, times=()):
+    """The flight, with rows at times in s."""
+    y = np.concatenate([np.divide(solved.position, AU), np.divide(solved.velocity, SPEED_UNIT), solved.costates])
+    sail = canonical_sail(solved.device, solved.characteristic_acceleration)
+    span = solved.time / TIME_UNIT
+    flight = costates.propagate(y, span, sail, times=np.minimum(np.divide(times, TIME_UNIT), span))
+    if flight.reason:
+        raise ValueError(f"these costates cannot be flown: {flight.reason} after {flight.time * TIME_UNIT:.6g} s")
+    return flight
+
+
+def primer_history(solved, *, error=1e-10) -> PrimerHistory:
+    """The primer of a solved flight on an even grid, dense enough for Hermite's cubic to keep an error in rad.
+
+    solved : an OrbitTransfer, a Rendezvous or a Solved.
+    """
+    intervals = FEWEST
+    while True:
+        time = np.linspace(0.0, solved.time, 2 * intervals + 1)
+        flight = _fly(solved, time)
+        primer, rate = flight.rows[:, 9:], -flight.rows[:, 6:9]
+        left, right = slice(0, -1, 2), slice(2, None, 2)
+        half = (time[2] - time[0]) / TIME_UNIT / 8
+        middle = 0.5 * (primer[left] + primer[right]) + half * (rate[left] - rate[right])
+        found = float(_angle(middle, primer[1::2]).max())
+        if found <= error or intervals >= MOST:
+            break
+        intervals *= 2
+    scale = TIME_UNIT / SPEED_UNIT
+    return PrimerHistory(
+        time[::2],
+        primer[::2] * scale,
+        rate[::2] * scale / TIME_UNIT,
+        found,
+        np.array(solved.position, dtype=float),
+        np.array(solved.velocity, dtype=float),
+        flight.switches * TIME_UNIT,
+    )
+
+
+def steering_table(solved, *, error=1e-6) -> SteeringTable:
+    """Attitudes of a solved flight, dense enough for linear reading to keep an error in rad, split at the switches.
+
+    solved : an OrbitTransfer, a Rendezvous or a Solved. Where the thrust is off a film stands edge-on and an E-sail
+    keeps turning with the primer, throttle 0. The pitch changes its sign rather than the clock angle jump by half a
+    turn, where there is thrust.
+    """
+    switches = _fly(solved).switches * TIME_UNIT
+    bounds = np.concatenate([[0.0], switches, [solved.time]])
+    beside = BESIDE * solved.time
+    columns, worst, before = [], 0.0, None
+    for first, last in pairwise(bounds):
+        if last - first <= 4 * beside:
+            continue
+        intervals = max(2, int(FEWEST * (last - first) / solved.time))
+        while True:
+            time = np.linspace(first, last, 2 * intervals + 1)
+            inside = np.clip(time, first + beside * (first > 0), last - beside * (last < solved.time))
+            pitch, clock, on = _attitude(solved, inside, before)
+            read = _normal(0.5 * (pitch[:-1:2] + pitch[2::2]), 0.5 * (clock[:-1:2] + clock[2::2]))
+            wrong = _angle(read, _normal(pitch[1::2], clock[1::2]))
+            found = float(np.max(wrong, where=on[1::2] > 0, initial=0.0))  # without thrust no attitude is wrong
+            if found <= error or intervals >= MOST:
+                break
+            intervals *= 2
+        worst, before = max(worst, found), (pitch[-1], clock[-1])
+        columns.append(np.column_stack([time, pitch, clock, on])[::2])
+    time, pitch, clock, throttle = np.vstack(columns).T
+    position, velocity = (np.array(x, dtype=float) for x in (solved.position, solved.velocity))
+    return SteeringTable(time, pitch, clock, throttle, worst, position, velocity, switches)
+
+
+def _attitude(solved, time, before):
+    """Pitch and clock rad, and 1 or 0 for thrust, each (n,), continuous from a pair of pitch and clock before."""
+    rows = _fly(solved, time).rows
+    primer = frames.to_frame(frames.rtn(rows[:, :3], rows[:, 3:6]), rows[:, 9:])
+    across = np.hypot(primer[:, 1], primer[:, 2])
+    steered = optimal_pitch(np.arctan2(across, primer[:, 0]), solved.device)
+    side = primer[:, 1:] / np.maximum(across, np.finfo(float).tiny)[:, None]
+    sign = np.cumprod(np.where(np.sum(side[1:] * side[:-1], axis=1) < 0, -1.0, 1.0))
+    sign = np.concatenate([[1.0], np.where(steered.on[1:], sign, 1.0)])
+    if before is not None and side[0] @ [np.sin(before[1]), np.cos(before[1])] < 0:
+        sign = -sign
+    clock = np.unwrap(np.arctan2(sign * side[:, 0], sign * side[:, 1]))
+    if before is not None:
+        clock += 2 * np.pi * np.round((before[1] - clock[0]) / (2 * np.pi))
+    return sign * steered.pitch, clock, steered.on.astype(float)
+
+
+def _normal(pitch, clock):
+    return np.column_stack([np.cos(pitch), np.sin(pitch) * np.sin(clock), np.sin(pitch) * np.cos(clock)])
+
+
+def _angle(a, b):
+    """Angles (n,) between vectors (n, 3)."""
+    return np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), np.sum(a * b, axis=1))

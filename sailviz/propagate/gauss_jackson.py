@@ -4,7 +4,9 @@ Each step predicts position and velocity from LAGS accelerations, evaluates the 
 acceleration what the correction changes in the central attraction (to first order; the change of everything else is a
 thousandth of that), which makes it as stable as a method with two evaluations. Source: Berry and Healy,
 Implementation of Gauss-Jackson Integration for Orbit Propagation, J. Astronaut. Sci. 52 (2004), known from its
-abstract; the formulae are re-derived in gauss_jackson_coefficients.
+abstract; the formulae are re-derived in gauss_jackson_coefficients. What is new here is against rounding, which rules
+the error of a year: the central attraction is kept with the part that a double loses, and so is the position at which
+it is taken.
 
 Everything that is no run of equal steps is done by error-controlled steps of DOP853: the LAGS points that the method
 starts from, the way to a kink of the thrust factor, to the end of the run. A start is made anew after each kink, after
@@ -12,8 +14,9 @@ an event that changes the force, when the orbit has shrunk so that the step is t
 jumps by more than DISTRUST of itself. In between, rows and events are taken from the quintic polynomial through
 position, velocity and acceleration at both ends of a step; its position is good to 4e-12 of the radius.
 
-The step is ANGLE over the angular rate at periapsis. On low orbits with oblateness and drag a year then costs 6e-10 of
-the radius. Mass stays constant.
+The step is ANGLE over the angular rate at periapsis. On low orbits with oblateness and drag a year then costs 1e-10 to
+6e-10 of the radius, nearly all of it rounding of the force, which a fall by several scale heights amplifies to 1e-9.
+Mass stays constant.
 """
 
 from __future__ import annotations
@@ -70,13 +73,14 @@ from sailviz.propagate.integration import statistics as statistics
 from sailviz.propagate.integration import stopped_by as stopped_by
 from sailviz.propagate.integration import time as time
 
-ANGLE = 0.072  # rad that the craft turns at periapsis in one step
+ANGLE = 0.067  # rad that the craft turns at periapsis in one step
 LONGEST, SHORTEST = 1.025, 0.8  # bounds of a step over what the rule says now; outside them it is chosen anew
 CHECK = 32  # steps between two looks at the rule
 LARGEST_ECCENTRICITY = 0.15  # beyond, and where other forces exceed STRONG of gravity, DOP853 makes the steps
 STRONG = 0.02
 DISTRUST = 1e-7  # a jump of the acceleration, over the acceleration, that is left to DOP853
 SEAM_TOLERANCE = 1e-14  # at most, of the DOP853 steps
+SUBSTEPS = 4  # of DOP853 between two points of a start, at least; a power of two, see _quantum
 
 # places in Integration.count after those that all integrators have
 NEWEST, POINTS, SINCE = 9, 10, 11  # row of history, accelerations in it, steps since ANCHOR
@@ -114,13 +118,13 @@ def start(t, position, velocity, mass, events=0, refinement=1.0) -> Multistep:
 
 @intrinsic
 def _weighted_sums(typing, history, newest):
-    """The nine sums over the accelerations up to row newest that a step needs: x, y, z of POSITION, VELOCITY,
-    EXTRAPOLATION. Written as vectors of four, which the compiler does not find by itself."""
+    """The twelve sums over the accelerations up to row newest that a step needs: x, y, z of POSITION, VELOCITY,
+    EXTRAPOLATION, POSITION_OTHERS. Written as vectors of four, which the compiler does not find by itself."""
 
     def generate(context, builder, signature, arguments):
         array = context.make_array(signature.args[0])(context, builder, arguments[0])
         real, word, vector = ir.DoubleType(), ir.IntType(64), ir.VectorType(ir.DoubleType(), 4)
-        tables = (c.POSITION, c.VELOCITY, c.EXTRAPOLATION)
+        tables = (c.POSITION, c.VELOCITY, c.EXTRAPOLATION, c.POSITION_OTHERS)
         sums = [ir.Constant(vector, [0.0] * 4)] * len(tables)
         for lag in range(LAGS - 1, -1, -1):
             place = builder.mul(builder.sub(arguments[1], ir.Constant(word, lag)), ir.Constant(word, 4))
@@ -133,7 +137,17 @@ def _weighted_sums(typing, history, newest):
         parts = [builder.extract_element(s, ir.Constant(ir.IntType(32), j)) for s in sums for j in range(3)]
         return context.make_tuple(builder, signature.return_type, parts)
 
-    return types.UniTuple(types.float64, 9)(history, types.int64), generate
+    return types.UniTuple(types.float64, 12)(history, types.int64), generate
+
+
+@intrinsic
+def _product_left(typing, a, b, product):
+    """a b - product without rounding in between."""
+
+    def generate(context, builder, signature, arguments):
+        return builder.fma(arguments[0], arguments[1], builder.fneg(arguments[2]))
+
+    return types.float64(types.float64, types.float64, types.float64), generate
 
 
 @inlined
@@ -168,10 +182,11 @@ def _rule(y, f, mu, refinement, largest_step):
 
 
 @inlined
-def _round_down(h):
-    """h with 20 bits, so that multiples of it, and its square, are exact."""
-    scale = 2.0 ** (np.floor(np.log2(h)) - 19.0)
-    return np.floor(h / scale) * scale
+def _quantum(h):
+    """The power of two of which a step of about h, and the time it starts from, are made multiples: then all times of
+    the method are exact, and so is the square of the step. Rounding the points of a start by 1e-9 s, what a time of a
+    year resolves, would cost 1e-7 of the radius."""
+    return 2.0 ** (np.floor(np.log2(h)) - 19.0)
 
 
 @inlined
@@ -231,7 +246,7 @@ def _quintic(y, f, new, g, h, m):
 
 
 @inlined
-def _coast(s, history, grid, watch, row_time, limit, factor, model, near, mu):
+def _coast(s, history, grid, watch, row_time, limit, factor, perturbations, near, mu):
     """Steps up to the one that contains row_time, in which something watched may happen, after which the rule is due,
     or that would come too near to limit. Leaves in s.work: Y and k[0], state and derivative at the start of the last
     step, NEW and k[12] at its end. Returns the steps made; none where the acceleration jumps at the first."""
@@ -240,6 +255,7 @@ def _coast(s, history, grid, watch, row_time, limit, factor, model, near, mu):
     newest, since = count[NEWEST], count[SINCE]
     anchor, h = grid[ANCHOR], grid[GRID_STEP]
     h2 = h * h
+    new = h2 * (c.POSITION_NEW + c.POSITION_NEW_LEFT)
     s1x, s1y, s1z = grid[FIRST_SUM], grid[FIRST_SUM + 1], grid[FIRST_SUM + 2]
     l1x, l1y, l1z = grid[FIRST_SUM + 3], grid[FIRST_SUM + 4], grid[FIRST_SUM + 5]
     s2x, s2y, s2z = grid[SECOND_SUM], grid[SECOND_SUM + 1], grid[SECOND_SUM + 2]
@@ -256,32 +272,42 @@ def _coast(s, history, grid, watch, row_time, limit, factor, model, near, mu):
         t = anchor + (since + 1) * h
         if t > limit:
             break
-        px, py, pz, qx, qy, qz, ex, ey, ez = _weighted_sums(history, newest)
-        # what rounding took from the two largest coefficients; see gauss_jackson_coefficients
-        px += c.POSITION_NEWEST * history[newest, 0] + c.POSITION_SECOND * history[newest - 1, 0]
-        py += c.POSITION_NEWEST * history[newest, 1] + c.POSITION_SECOND * history[newest - 1, 1]
-        pz += c.POSITION_NEWEST * history[newest, 2] + c.POSITION_SECOND * history[newest - 1, 2]
-        px, py, pz = h2 * (s2x + (l2x + px)), h2 * (s2y + (l2y + py)), h2 * (s2z + (l2z + pz))
+        px, py, pz, qx, qy, qz, ex, ey, ez, ox, oy, oz = _weighted_sums(history, newest)
+        # position, and what rounding leaves of it
+        mx, rx = _two_sum(s2x, l2x + px)
+        my, ry = _two_sum(s2y, l2y + py)
+        mz, rz = _two_sum(s2z, l2z + pz)
+        ox += c.POSITION_SECOND_LEFT * history[newest, 0] - px
+        oy += c.POSITION_SECOND_LEFT * history[newest, 1] - py
+        oz += c.POSITION_SECOND_LEFT * history[newest, 2] - pz
+        px, py, pz = h2 * mx, h2 * my, h2 * mz
+        ox, oy, oz = h2 * (ox + rx), h2 * (oy + ry), h2 * (oz + rz)
+        ox += _product_left(h2, mx, px)
+        oy += _product_left(h2, my, py)
+        oz += _product_left(h2, mz, pz)
         qx, qy, qz = h * (s1x + (l1x + qx)), h * (s1y + (l1y + qy)), h * (s1z + (l1z + qz))
         w[0], w[1], w[2], w[3], w[4], w[5] = px, py, pz, qx, qy, qz
         inverse2 = 1.0 / (px * px + py * py + pz * pz)
         attraction = mu * inverse2 * np.sqrt(inverse2)
-        derivative(t, w, factor, model, f)
-        cx, cy, cz = f[3], f[4], f[5]
+        derivative(t, w, factor, perturbations, f)
+        tx, ty, tz = attraction * px, attraction * py, attraction * pz
+        cx, cy, cz = f[3] - tx, f[4] - ty, f[5] - tz
         dx, dy, dz = cx - ex, cy - ey, cz - ez
         if not (dx * dx + dy * dy + dz * dz <= DISTRUST * DISTRUST * (cx * cx + cy * cy + cz * cz)):
             break
         x0, y0, z0, u0, v0, w0, ax, ay, az = x, y, z, u, v, ww, bx, by, bz
-        g = h2 * c.POSITION_CORRECTION
-        gx, gy, gz = g * dx, g * dy, g * dz
+        gx, gy, gz = ox + new * cx, oy + new * cy, oz + new * cz
         x, y, z = px + gx, py + gy, pz + gz
         u = qx + h * c.VELOCITY_CORRECTION * dx
         v = qy + h * c.VELOCITY_CORRECTION * dy
         ww = qz + h * c.VELOCITY_CORRECTION * dz
         along = 3.0 * (px * gx + py * gy + pz * gz) * inverse2
-        bx = cx - attraction * (gx - along * px)
-        by = cy - attraction * (gy - along * py)
-        bz = cz - attraction * (gz - along * pz)
+        fx, fy, fz = attraction * (gx - along * px), attraction * (gy - along * py), attraction * (gz - along * pz)
+        bx, by, bz = cx - fx, cy - fy, cz - fz
+        # everything beside the attraction rounded to a double, for the sums
+        fx = f[3] - _product_left(attraction, px, tx) - fx
+        fy = f[4] - _product_left(attraction, py, ty) - fy
+        fz = f[5] - _product_left(attraction, pz, tz) - fz
         newest += 1
         if newest == HISTORY:
             for i in range(LAGS):
@@ -289,10 +315,10 @@ def _coast(s, history, grid, watch, row_time, limit, factor, model, near, mu):
                     history[i, j] = history[HISTORY - LAGS + i, j]
             newest = LAGS
         history[newest, 0], history[newest, 1], history[newest, 2] = bx, by, bz
-        s1x, e1 = _two_sum(s1x, bx)
-        s1y, e2 = _two_sum(s1y, by)
-        s1z, e3 = _two_sum(s1z, bz)
-        l1x, l1y, l1z = l1x + e1, l1y + e2, l1z + e3
+        s1x, e1 = _two_sum(s1x, -tx)
+        s1y, e2 = _two_sum(s1y, -ty)
+        s1z, e3 = _two_sum(s1z, -tz)
+        l1x, l1y, l1z = l1x + (e1 + fx), l1y + (e2 + fy), l1z + (e3 + fz)
         s2x, e1 = _two_sum(s2x, s1x)
         s2y, e2 = _two_sum(s2y, s1y)
         s2z, e3 = _two_sum(s2z, s1z)
@@ -341,6 +367,9 @@ def advance_compiled(
     """`advance` with its tuples taken apart."""
     s = Integration(work, count, sign, event)
     model = Model(device, steering, parameters)
+    others = parameters.copy()
+    others[MU] = 0.0
+    perturbations = Model(device, steering, others)  # all but the central attraction
     watch = Watch(kinds, levels, senses, actions)
     n, components = t_out.shape[0], out.shape[0]
     mu, surface = model.parameters[MU], model.parameters[SURFACE_RADIUS]
@@ -394,7 +423,7 @@ def advance_compiled(
             # a periapsis between two steps is deeper than both by less than g h^2 / 8
             deep = surface + 0.2 * mu / (surface * surface) * h * h if surface > 0.0 else 0.0
             made = _coast(
-                s, history, grid, watch, t_out[row], limit - 0.01 * h, factor, model, deep * deep, mu
+                s, history, grid, watch, t_out[row], limit - 0.01 * h, factor, perturbations, deep * deep, mu
             )  # fmt: skip
             if made == 0:
                 count[POINTS] = 0
@@ -409,10 +438,14 @@ def advance_compiled(
                 suits, h = _rule(y, k[0], mu, grid[REFINEMENT], largest_step)
                 # not worth its start before a kink that is near
                 if suits and limit - t > 2 * LAGS * h:
-                    grid[ANCHOR], grid[GRID_STEP], count[SINCE] = t, _round_down(h), 0
-                    _keep(history, count, k[0])
+                    quantum = _quantum(h)
+                    target = np.ceil(t / quantum) * quantum
+                    if target == t:
+                        grid[ANCHOR], grid[GRID_STEP], count[SINCE] = t, np.floor(h / quantum) * quantum, 0
+                        _keep(history, count, k[0])
             if count[POINTS] > 0:
                 target = grid[ANCHOR] + (count[SINCE] + 1) * grid[GRID_STEP]
+                aim = grid[GRID_STEP] / SUBSTEPS  # an error of the energy in the start counts for the whole run
             h, landing, rejected, wish, error = attempt(
                 t, target, clock[STEP], aim, t_end, tolerance, factor, model, k, count, mu
             )

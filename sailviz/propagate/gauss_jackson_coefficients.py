@@ -6,10 +6,10 @@ sum gamma_j x^j = -x / ((1 - x) ln(1 - x)) and sum sigma_j x^j = x^2 / ((1 - x) 
 lack the factor 1 / (1 - x). Source: Henrici, Discrete Variable Methods in Ordinary Differential Equations (1962),
 chapters 5 and 6, re-derived.
 
-The sums are formed over the accelerations themselves, with the large alternating ordinate coefficients c_i. These must
-not be rounded one by one: errors of 1e-14 in them push along the track and cost 1e-7 of the radius in a year. So the
-difference coefficients are rounded to multiples of 2^-q, for which every c_i is exact, and what that left of sigma_2
-and sigma_3 is added back through the two newest accelerations.
+The sums are formed over the accelerations themselves, with large alternating ordinate coefficients c_i. Those of the
+position's corrector must not be rounded one by one: errors of 1e-14 in them push along the track and cost 1e-7 of the
+radius in a year. So its difference coefficients are rounded to multiples of 2^-q, for which every c_i is exact, and
+what that leaves of the first two is added back.
 """
 
 from __future__ import annotations
@@ -50,14 +50,17 @@ def _rounded(differences):
 _MOULTON, _COWELL = _series(LAGS + 2)
 _BASHFORTH, _STOERMER = _running(_MOULTON), _running(_COWELL)
 
-POSITION, _left = _rounded(_STOERMER[2 : 2 + LAGS])
-POSITION_NEWEST, POSITION_SECOND = float(_left[0] + _left[1]), float(-_left[1])
+POSITION = tuple(float(c) for c in _ordinates(_STOERMER[2 : 2 + LAGS]))
 VELOCITY = tuple(float(c) for c in _ordinates(_BASHFORTH[1 : 1 + LAGS]))
 EXTRAPOLATION = tuple(float(c) for c in _ordinates([Fraction(1)] * LAGS))  # of the acceleration itself: binomials
 
-# the correctors with as many accelerations are the predictors plus these times what the acceleration is above its
-# extrapolation
-POSITION_CORRECTION, VELOCITY_CORRECTION = float(_STOERMER[1 + LAGS]), float(_BASHFORTH[LAGS])
+# The corrector of the position: the coefficient of the new acceleration, those of the others, and what the rounding of
+# these leaves out, to be added through the new acceleration and the one before. The velocity's is its predictor plus
+# VELOCITY_CORRECTION times what the acceleration is above its extrapolation.
+_corrector, _left = _rounded(_COWELL[2 : 2 + LAGS])
+POSITION_NEW, POSITION_OTHERS = _corrector[0], (*_corrector[1:], 0.0)
+POSITION_NEW_LEFT, POSITION_SECOND_LEFT = float(_left[0] + _left[1]), float(-_left[1])
+VELOCITY_CORRECTION = float(_BASHFORTH[LAGS])
 
 # to begin the sums: the corrector at the middle of the LAGS accelerations, where its coefficients are below 1/10 and
 # rounding does no harm

@@ -1,0 +1,66 @@
+"""Which integrator suits a run: the multistep method for many revolutions close to a body, DOP853 for all else."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from sailviz.propagate.dynamics import DEVICE, MU, SURFACE_RADIUS, THRUSTER
+from sailviz.propagate.gauss_jackson import ANGLE, LARGEST_ECCENTRICITY
+from sailviz.propagate.gauss_jackson_coefficients import LAGS
+
+DOP853, GAUSS_JACKSON = "dop853", "gauss-jackson"
+FEWEST_TURNS = 50  # below, DOP853 is as accurate and the gain is microseconds
+LOW = 3.0  # radii of the body within which orbits decay and the forces are small beside gravity
+STEPS_A_START_COSTS = 10 * LAGS  # twelve evaluations for each point, and as much again lost on the way to a kink
+
+
+@dataclass(frozen=True)
+class Choice:
+    """integrator : "dop853" or "gauss-jackson"; reason : one clause, why; possible : False where gauss-jackson, asked
+    for, would not work, and reason says why."""
+
+    integrator: str
+    reason: str
+    possible: bool = True
+
+
+def choose(model, position, velocity, duration, breaks=(0.0,), wanted="auto") -> Choice:
+    """The integrator for a run of duration s from position m and velocity m/s, whose thrust factor has kinks at breaks
+    s. wanted : "auto", "dop853" or "gauss-jackson". ValueError for another word.
+
+    Looks at the osculating orbit at the start alone: an orbit that becomes eccentric later is finished by the DOP853
+    steps of gauss_jackson itself, correctly but no faster than by DOP853.
+    """
+    if wanted not in ("auto", DOP853, GAUSS_JACKSON):
+        raise ValueError(f'the integrator must be "auto", "{DOP853}" or "{GAUSS_JACKSON}", not {wanted!r}.')
+    if wanted == DOP853:
+        return Choice(DOP853, "asked for")
+    p = model.parameters
+    mu, surface = p[MU], p[SURFACE_RADIUS]
+    r, v = np.asarray(position, float), np.asarray(velocity, float)
+    size = np.linalg.norm(r)
+    axis = 1.0 / (2.0 / size - v @ v / mu)  # semi-major, m
+    e = float(np.linalg.norm(((v @ v) * r - (r @ v) * v) / mu - r / size))
+    if model.device == THRUSTER and p[DEVICE + 2] != 0.0:
+        obstacle = "the thruster burns propellant, and the multistep method keeps the mass constant"
+    elif not axis > 0.0:
+        obstacle = "the orbit is not bound"
+    elif e >= LARGEST_ECCENTRICITY:
+        obstacle = f"the eccentricity {e:.3g} is not below {LARGEST_ECCENTRICITY:g}, and its steps are equal"
+    else:
+        obstacle = ""
+    if obstacle:
+        return Choice(DOP853, obstacle, wanted == "auto")
+    if wanted == GAUSS_JACKSON:
+        return Choice(GAUSS_JACKSON, "asked for")
+    turn = 2 * np.pi * np.sqrt(axis**3 / mu)
+    kinks = np.count_nonzero((np.asarray(breaks) > 0.0) & (np.asarray(breaks) < duration))
+    if surface == 0.0 or axis > LOW * surface:
+        return Choice(DOP853, "the orbit is not a low one")
+    if duration < FEWEST_TURNS * turn:
+        return Choice(DOP853, f"{duration / turn:.0f} revolutions are few")
+    if duration / (kinks + 1) < STEPS_A_START_COSTS * ANGLE / (2 * np.pi) * turn:
+        return Choice(DOP853, f"the thrust is switched {kinks * turn / duration:.1f} times a revolution")
+    return Choice(GAUSS_JACKSON, f"{duration / turn:.0f} revolutions of a low orbit of eccentricity {e:.2g}")

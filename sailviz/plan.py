@@ -31,6 +31,7 @@ from sailviz.errors import Fault, SceneError
 from sailviz.plan_low_orbit import brake_device, low_orbit_parts
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate import events as happening
+from sailviz.propagate.choice import Choice, choose
 from sailviz.propagate.plugs import user_address
 from sailviz.propulsion import electric_sail
 from sailviz.propulsion.devices import sail
@@ -66,6 +67,7 @@ class Plan:
     design: object | None  # the design's result for starts that ask for one
     approximations: dict[str, FirstOrder]
     quasi_circular: QuasiCircular | None
+    choice: Choice  # of the integrator
     keep: tuple  # compiled user functions must live as long as the plan
     identity: str
 
@@ -121,6 +123,7 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
         design,
         _approximations(scene, body, position, velocity, design),
         _quasi_circular(scene, position, velocity),
+        _integrator(scene, model, position, velocity, when.breaks),
         tuple(keep),
         _identity(scene, steering=steering, force=force),
     )
@@ -411,6 +414,15 @@ def _controlled(scene, when: Schedule, nominal):
         r = np.linalg.norm(states[:3], axis=0)
         lines[:, R_REF], lines[:, U_REF] = r, np.sum(states[:3] * states[3:], axis=0) / r
     return {"control": factor_plug(), "control_table": lines, "control_law": when.law}
+
+
+def _integrator(scene, model, position, velocity, breaks) -> Choice:
+    """Which integrator a scene gets. SceneError where the one asked for cannot do it."""
+    run = scene.propagation
+    found = choose(model, position, velocity, run.duration, breaks, run.integrator)
+    if not found.possible:
+        raise SceneError([Fault("propagation.integrator", f"{found.reason}.")], scene.source)
+    return found
 
 
 def _flight(model, position, velocity, breaks, factors, times):

@@ -15,6 +15,7 @@ from sailviz.design.holding import Track
 from sailviz.environment import ionosphere, solar_level, sun
 from sailviz.plan import TRACK_POINTS, Plan, epoch_of, sail_strength, third_body
 from sailviz.propagate import dop853, row
+from sailviz.propagate.choice import GAUSS_JACKSON
 from sailviz.run import Craft, Reference, Setting, Shell
 from sailviz.scene_sections import HELD_STARTS
 
@@ -45,13 +46,22 @@ def setting_of(p: Plan, planets, rows) -> Setting:
             "numpy": np.__version__,
             "numba": numba.__version__,
         },
-        accuracy=(
-            f"Dormand-Prince 8(5,3) with dense output, relative tolerance {scene.propagation.tolerance:g} per step "
-            "(position against distance, velocity against the larger of speed and circular speed), float64."
-        ),
+        accuracy=_accuracy(p),
         identity=p.identity,
         play_duration=scene.recording.play_duration,
         shells=_shells(p),
+    )
+
+
+def _accuracy(p: Plan) -> str:
+    if p.choice.integrator == GAUSS_JACKSON:
+        return (
+            "Summed Gauss-Jackson, fixed step, compensated sums, quintic output between the steps, float64; started "
+            "and restarted by Dormand-Prince 8(5,3). About 1e-9 of the radius in a year under smooth forces."
+        )
+    return (
+        f"Dormand-Prince 8(5,3) with dense output, relative tolerance {p.scene.propagation.tolerance:g} per step "
+        "(position against distance, velocity against the larger of speed and circular speed), float64."
     )
 
 

@@ -12,13 +12,15 @@ from sailviz import frames
 from sailviz.errors import PropagationError
 from sailviz.observation import observe, voltages
 from sailviz.plan import Plan, plan
-from sailviz.propagate import dop853, dynamics
+from sailviz.propagate import dop853, dynamics, gauss_jackson, integration
+from sailviz.propagate.choice import DOP853, GAUSS_JACKSON
 from sailviz.run import Attitude, Event, Run, Thrust, join
 from sailviz.scene import Scene
 from sailviz.setting import bodies, planets_in_view, setting_of
 
 BLOCK_ROWS = 16_384  # a recording takes this many at once
 DEFAULT_OUTPUTS = 1000
+INTEGRATORS = {DOP853: dop853, GAUSS_JACKSON: gauss_jackson}
 
 
 def simulate(scene: Scene, *, steering=None, force=None) -> Run:
@@ -82,7 +84,8 @@ def _blocks(p: Plan, block_rows, progress):
     run = p.scene.propagation
     output = OutputTimes(run)
     rows = output.rows
-    state = dop853.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
+    integrator = INTEGRATORS[p.choice.integrator]
+    state = integrator.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
     setting = None
     off_time = np.inf
     switches = list(p.schedule.switches)
@@ -92,16 +95,16 @@ def _blocks(p: Plan, block_rows, progress):
         due = [switch for switch in switches if switch[0] <= times[-1]]
         del switches[: len(due)]
         columns, found, status = _fill(p, state, times, due, rows, progress)
-        if not dop853.in_use(state):
+        if not integration.in_use(state):
             off_time = min([off_time] + [event.time for event in found if event.name == "brake off"])
-        last = status != dop853.DONE or first + count == rows
-        ended = "impact" if status == dop853.SURFACE else ""
-        if status == dop853.STOPPED:
-            ended = p.names[dop853.stopped_by(state)]
+        last = status != integration.DONE or first + count == rows
+        ended = "impact" if status == integration.SURFACE else ""
+        if status == integration.STOPPED:
+            ended = p.names[integration.stopped_by(state)]
         if ended:  # the state at the event is the last row
-            now = dop853.time(state)
+            now = integration.time(state)
             if not len(columns[0]) or columns[0][-1] < now:
-                end = dop853.state(state)[:, None]
+                end = integration.state(state)[:, None]
                 columns = (np.append(columns[0], now), np.hstack([columns[1], end]))
         if len(columns[0]):
             if setting is None:
@@ -116,11 +119,11 @@ def _blocks(p: Plan, block_rows, progress):
                 events=tuple(found),
                 ended=ended,
             )
-        if status in (dop853.UNDERFLOW, dop853.NOT_FINITE):
+        if status in (integration.UNDERFLOW, integration.NOT_FINITE):
             reason = "The step size fell below the resolution of time"
-            if status == dop853.NOT_FINITE:
+            if status == integration.NOT_FINITE:
                 reason = "The acceleration is not a finite number"
-            raise PropagationError(reason, dop853.time(state), dop853.state(state))
+            raise PropagationError(reason, integration.time(state), integration.state(state))
         if last:
             progress(1.0)
             return
@@ -133,12 +136,12 @@ def _fill(p: Plan, state, times, switches, output_rows, progress):
     components = 7 if p.model.device == dynamics.THRUSTER else 6
     out = np.empty((components, len(moments)))
     piece = max(1, min(len(moments), output_rows // 50))  # often enough to show progress and to hear Ctrl-C
-    found, status, filled = [], dop853.DONE, 0
+    found, status, filled = [], integration.DONE, 0
     for first in range(0, len(moments), piece):
         part = moments[first : first + piece]
         chunk = np.empty((components, len(part)))
         while True:
-            status = dop853.advance(
+            status = INTEGRATORS[p.choice.integrator].advance(
                 state,
                 p.model,
                 p.schedule.breaks,
@@ -152,15 +155,15 @@ def _fill(p: Plan, state, times, switches, output_rows, progress):
             )
             found += [
                 Event("impact" if index < 0 else p.names[index], time, y)
-                for index, time, y in dop853.drain_events(state)
+                for index, time, y in integration.drain_events(state)
             ]
-            if status != dop853.EVENTS_FULL:
+            if status != integration.EVENTS_FULL:
                 break
-        done = dop853.rows_done(state)
+        done = integration.rows_done(state)
         out[:, first : first + done] = chunk[:, :done]
         filled = first + done
-        progress(dop853.time(state) / run.duration)
-        if status != dop853.DONE:
+        progress(integration.time(state) / run.duration)
+        if status != integration.DONE:
             break
     moments, out = moments[:filled], out[:, :filled]
     states = out if components == 7 else np.vstack([out, np.full((1, filled), p.mass)])

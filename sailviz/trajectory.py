@@ -93,7 +93,8 @@ def trajectory(
     device : "solar-sail", "electric-sail", "plasma-brake", "thruster" or "none", for the mesh; by default what thrust
         and normal suggest. side m of a sail, tethers, tether_length m : for scale and labels
     events : (name, time s) pairs or Events. references : name -> (k, 3) m, or References
-    environment : name with unit -> (n,). planets : draw their orbits round the Sun, and with an epoch where they are
+    environment : name with unit -> (n,) numbers or truth values, or (n, 3). planets : draw their orbits round the Sun,
+        and with an epoch where they are
     Raises TrajectoryError (a ValueError) with every fault at once.
     """
     check = _Checks()
@@ -253,10 +254,12 @@ class _Checks:
     def environment(self, columns, rows) -> dict:
         found = {}
         for name, values in columns.items():
-            column = self.array(f"environment[{name!r}]", values, f"({rows},)")
-            if column is not None and column.shape != (rows,):
-                self.say(f"environment[{name!r}]: shape {column.shape}, wanted ({rows},)")
-            found[str(name)] = column
+            wanted = f"({rows},) or ({rows}, 3)"
+            column = self.array(f"environment[{name!r}]", values, wanted)
+            if column is not None and column.shape not in ((rows,), (rows, 3)):
+                self.say(f"environment[{name!r}]: shape {column.shape}, wanted {wanted}")
+            yes_or_no = column is not None and np.asarray(values).dtype == bool
+            found[str(name)] = column.astype(bool) if yes_or_no else column
         return found
 
     def references(self, curves) -> tuple[Reference, ...]:

@@ -181,3 +181,17 @@ def test_the_example_refuses_a_body_it_does_not_know(tmp_path):
     done = subprocess.run([sys.executable, SCRIPT, tmp_path / "a.oem"], capture_output=True, text=True, cwd=tmp_path)
     assert done.returncode == 1
     assert "no gravitational parameter for Ceres" in done.stderr
+
+
+def test_an_environment_may_hold_truth_values_and_vectors(tmp_path):
+    position, velocity, time = np.ones((ROWS, 3)) * 1e7, np.ones((ROWS, 3)), np.arange(ROWS) * 60.0
+    lit = np.arange(ROWS) % 2 == 0
+    field = np.arange(3.0 * ROWS).reshape(ROWS, 3)
+    sailviz.record_trajectory(
+        time, position, velocity, mu=3.986004418e14, environment={"sunlit": lit, "field_T": field},
+        sink=tmp_path / "lit.rrd",
+    )  # fmt: skip
+    read = sailviz.read(tmp_path / "lit.rrd")["/environment"]
+    assert read["sunlit"].dtype == bool
+    assert np.array_equal(read["sunlit"], lit)
+    assert np.array_equal(read["field_T"], field)

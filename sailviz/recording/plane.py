@@ -138,7 +138,7 @@ def notes(run: Run, frame: Frame, ladder: int) -> list[str]:
     every = frame.duration / ladder / day
     lines = [
         f"orbit: **blue** at {start:.0f} km, pale at {0.75 * start:.0f} km, **orange** at the ground; "
-        f"a faint ring every {every:.2g} {name}"
+        f"a faint ring every {every:.4g} {name}"
     ]
     for shell in run.setting.shells:
         low, high = float(np.nanmin(shell.value)), float(np.nanmax(shell.value))

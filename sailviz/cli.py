@@ -13,7 +13,7 @@ from pathlib import Path
 
 import click
 
-from sailviz import cli_figures, cli_pictures, cli_recordings
+from sailviz import cli_figures, cli_pictures, cli_recordings, cli_transfer
 from sailviz.cli_shared import (
     EXPECTATION_FAILED,
     collecting_failures,
@@ -33,7 +33,7 @@ def main():
     """Trajectories of solar sails, electric sails and plasma brakes: computed, recorded, replayed."""
 
 
-for _command in (*cli_recordings.COMMANDS, *cli_pictures.COMMANDS, *cli_figures.COMMANDS):
+for _command in (*cli_recordings.COMMANDS, *cli_pictures.COMMANDS, *cli_figures.COMMANDS, *cli_transfer.COMMANDS):
     main.add_command(_command)
 
 

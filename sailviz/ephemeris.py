@@ -129,11 +129,17 @@ def _de421(name, seconds):
     return np.column_stack([x, c * y + s * z, c * z - s * y])
 
 
+def planet_ellipse(name, epoch=None) -> orbital.Elements:
+    """The planet's orbit as mean elements at the epoch (J2000 without one), scalars; the true anomaly is left 0."""
+    seconds = 0.0 if epoch is None else _seconds_since_j2000(epoch)
+    return orbital.Elements(*(float(value[0]) for value in planet_elements(name, seconds)[:5]), 0.0)
+
+
 def planet_orbit(name, epoch=None, points=361):
     """The planet's orbit as a closed curve (points, 3) m, with its elements at the epoch (J2000 without one)."""
-    seconds = 0.0 if epoch is None else _seconds_since_j2000(epoch)
-    a, e, i, node, argument, _ = planet_elements(name, seconds)
-    return orbital.state(a, e, i, node, argument, np.linspace(0, 2 * np.pi, points), MU_SUN)[0]
+    e = planet_ellipse(name, epoch)
+    turn = np.linspace(0, 2 * np.pi, points)
+    return orbital.state(e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument, turn, MU_SUN)[0]
 
 
 # The Sun of the Astronomical Almanac's low-precision formulae (section C): deg at J2000 and deg per day

@@ -22,7 +22,8 @@ def observe(p: Plan, time, states, factor):
     normal, acceleration, throttle = dynamics.observe(time, states, factor, p.model)
     columns = {}
     if p.model.steering in (law.PRIMER, law.LOCAL, law.LYAPUNOV):
-        columns["primer_direction"] = observe_primer(time, states, p.model.parameters)
+        columns["primer_direction"], support = observe_primer(time, states, p.model.parameters)
+        columns["switching_function"] = support  # thrust that the law expects along the primer, share of the full one
     if p.body.name == "Earth":
         values = seen.observe_low_orbit(time, states, factor, p.model.parameters)
         columns = low_orbit_columns(p, time, states, values)

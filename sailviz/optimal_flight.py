@@ -8,10 +8,12 @@ from sailviz import frames
 from sailviz.constants import MU_SUN
 from sailviz.design.reflight import Solved, from_planar, primer_history
 from sailviz.errors import Fault, SceneError
+from sailviz.optimal_steering import optimal_pitch
 
 
 def primer_table(scene, position, velocity, device, characteristic_acceleration):
-    """Rows (n, 7): time s, primer (3), its rate (3), inertial, from the start to the end of the run.
+    """Rows (n, 7): time s, primer (3), its rate (3), inertial, from the start to the end of the run; and (time s,
+    "thrust on" | "thrust off") of every switch.
 
     position m, velocity m/s (3,); device : the sail that the law reckons with, a name or a Film. SceneError where the
     costates lead nowhere.
@@ -27,7 +29,15 @@ def primer_table(scene, position, velocity, device, characteristic_acceleration)
         found = primer_history(solved)
     except ValueError as error:
         raise SceneError([Fault("steering.costates", f"{error}.")], scene.source) from None
-    return np.column_stack([found.time, found.primer, found.rate])
+    return np.column_stack([found.time, found.primer, found.rate]), _switches(found, device)
+
+
+def _switches(found, device):
+    """(time s, word) of a flight's switches, from whether it begins with thrust."""
+    r, primer = found.position, found.primer[0]
+    on = bool(optimal_pitch(np.arctan2(np.linalg.norm(np.cross(r, primer)), r @ primer), device).on)
+    words = ("thrust off", "thrust on") if on else ("thrust on", "thrust off")
+    return tuple((float(time), words[i % 2]) for i, time in enumerate(found.switches))
 
 
 def planar_start(position, velocity, costates):

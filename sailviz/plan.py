@@ -6,7 +6,7 @@ A Model, an initial state, a schedule of thrust factors and a list of events; no
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -78,17 +78,18 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
     design = _design(scene)
     position, velocity = _initial_state(scene, body, design)
     device, device_parameters = _device(scene, design)
-    law_id, law_parameters, table, interpolation = _steering(scene, design, position, velocity)
+    law_id, law_parameters, table, interpolation, switches = _steering(scene, design, position, velocity)
     keep = []
     user_steering = user_force = 0
     if steering is not None:
         user_steering, handle = user_address(steering, "steering")
-        law_id, law_parameters, table, interpolation = law.USER, (), None, law.LINEAR
+        law_id, law_parameters, table, interpolation, switches = law.USER, (), None, law.LINEAR, ()
         keep.append(handle)
     if force is not None:
         user_force, handle = user_address(force, "force")
         keep.append(handle)
     when = schedule(scene, table)
+    when = replace(when, switches=tuple(sorted({*when.switches, *switches})))
     names, watch = _watched(scene, body)
     parts = dict(
         device=device,
@@ -334,14 +335,15 @@ def _device(scene, design):
 
 
 def _steering(scene, design, position, velocity):
-    """(id, parameters, table or None, interpolation) for the right-hand side."""
+    """(id, parameters, table or None, interpolation) for the right-hand side, and (time s, "thrust on" | "thrust off")
+    of every switch."""
     steering = scene.steering
-    plain = (None, law.LINEAR)
+    plain = (None, law.LINEAR, ())
     if steering is None or scene.device.kind == "plasma-brake":  # a tether's attitude is among its device's numbers
         return law.RADIAL, (), *plain
     if steering.kind == "as designed" and isinstance(design, Track):
         table = law.table(design.time - design.time[0], design.pitch, np.unwrap(design.clock), design.throttle, "cubic")
-        return law.TABLE_ORBITAL, (), table, law.CUBIC
+        return law.TABLE_ORBITAL, (), table, law.CUBIC, ()
     if steering.kind == "as designed":
         if np.ndim(design.pitch) == 0 and design.pitch == 0:  # Sun-facing needs no orbit plane, and may have none
             return law.RADIAL, (), *plain
@@ -349,26 +351,30 @@ def _steering(scene, design, position, velocity):
     if steering.kind == "table":
         table = law.table(steering.time, steering.pitch, steering.clock, steering.throttle, steering.interpolation)
         kind = law.TABLE_ORBITAL if steering.frame == "orbital" else law.TABLE_MERIDIAN
-        return kind, (), table, law.INTERPOLATIONS[steering.interpolation]
+        return kind, (), table, law.INTERPOLATIONS[steering.interpolation], _throttled(steering)
     if steering.kind == "optimal":
         from sailviz.optimal_flight import primer_table
 
         sail_of_law = steering.reckons_with or _sail_name(scene)
-        return (
-            law.PRIMER,
-            (),
-            primer_table(scene, position, velocity, sail_of_law, sail_strength(scene, design)),
-            law.CUBIC,
-        )
+        table, switches = primer_table(scene, position, velocity, sail_of_law, sail_strength(scene, design))
+        # the times of another sail's switches are not quite those of this flight
+        return law.PRIMER, (), table, law.CUBIC, switches if steering.reckons_with is None else ()
     if steering.kind == "locally-optimal":
         return law.LOCAL, (primers.GOALS[steering.goal], 1.0 if steering.sense == "increase" else -1.0), *plain
     if steering.kind == "lyapunov":
-        return law.LYAPUNOV, (), _lyapunov_row(steering), law.LINEAR
+        return law.LYAPUNOV, (), _lyapunov_row(steering), law.LINEAR, ()
     if steering.kind == "inertial":
         return law.INERTIAL, tuple(frames.unit(steering.direction)), *plain
     if steering.kind in ("orbital", "meridian"):
         return law.LAWS[steering.kind], law.direction_parameters(steering.pitch, steering.clock), *plain
     return law.LAWS[steering.kind], (), *plain
+
+
+def _throttled(steering):
+    """(time s, word) of every row at which a table's throttle leaves 0 or comes to it."""
+    on = np.array(steering.throttle or [1.0]) > 0
+    rows = np.nonzero(on[1:] != on[:-1])[0] + 1
+    return tuple((steering.time[i], "thrust on" if on[i] else "thrust off") for i in rows if steering.time[i] > 0)
 
 
 def _lyapunov_row(steering):

@@ -31,6 +31,7 @@ from sailviz.scene_sections import (
     Section,
     Start,
     Steering,
+    Target,
     Watched,
 )
 from sailviz.shipped import shipped_scenes
@@ -50,6 +51,7 @@ class Scene(Section):
     start: Start
     device: Devices
     steering: Steering | None = None
+    target: Target | None = None
     environment: Environment = Environment()
     propagation: Propagation
     event: list[Watched] = []

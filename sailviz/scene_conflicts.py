@@ -46,6 +46,8 @@ def conflicts(scene: Scene) -> list[tuple[str, str]]:
         found.append(("device.model", 'orbits are designed with the "final" model'))
     elif start.kind in ("planet-following", "flat-ellipse") and (not designed or law != "as designed"):
         found.append(("start.kind", f'{start.kind} needs characteristic_acceleration and steering "as designed"'))
+    if scene.target is not None and scene.target.planet is not None and scene.body != "sun":
+        found.append(("target.planet", "a planet's orbit goes round the Sun"))
     if scene.environment.third_body is not None and scene.body != "sun":
         found.append(("environment.third_body", "a third body goes round the Sun"))
     if start.kind == "spiral":

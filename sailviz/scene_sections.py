@@ -502,6 +502,33 @@ Steering = Annotated[
 PRIMER_LAWS = ("optimal", "locally-optimal", "lyapunov")
 
 
+# ---------------------------------------------------------------- where it is meant to arrive
+PLANET = Literal["mercury", "venus", "earth", "mars", "jupiter", "saturn"]
+
+
+class Target(Section):
+    """An orbit to be reached, drawn beside the flight: a circle, an ellipse, or the orbit of a planet (mean elements at
+    the epoch, or of J2000 without one)."""
+
+    name: str | None = None
+    planet: PLANET | None = None
+    radius: Annotated[Length, POSITIVE] | None = None
+    semi_major_axis: Annotated[Length, POSITIVE] | None = None
+    eccentricity: Annotated[float, Field(ge=0, lt=1)] = 0.0
+    inclination: Annotated[Angle, Field(ge=0, le=3.141592653589794)] = 0.0
+    raan: Angle = 0.0
+    argument: Angle = 0.0
+
+    @model_validator(mode="after")
+    def _which(self):
+        _one_of(self, "planet", "radius", "semi_major_axis")
+        if self.radius is not None and (self.eccentricity or self.argument):
+            raise _wrong("radius is that of a circle: an ellipse has semi_major_axis and eccentricity")
+        if self.planet is not None and (self.eccentricity or self.inclination or self.raan or self.argument):
+            raise _wrong("the orbit of a planet is known: give the planet alone")
+        return self
+
+
 # ---------------------------------------------------------------- what surrounds it
 class DrawnWind(Section):
     """Solar-wind dynamic pressure at 1 au drawn from a law: independent every `redraw`, correlated, or one value for

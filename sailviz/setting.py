@@ -107,17 +107,38 @@ def _references(p: Plan, planets) -> tuple[Reference, ...]:
         found.append(Reference("designed orbit", "target", ring))
     elif isinstance(p.design, Track):
         found.append(Reference("designed orbit", "target", p.design.position[: TRACK_POINTS + 1]))
-    elif start.kind in ("circular", "elements"):
+    aim = _target(p)
+    if start.kind in ("circular", "elements") or (aim is not None and start.kind == "cartesian"):
         e = orbital.elements(p.position, p.velocity, p.body.mu)
         if e.eccentricity < 1:
-            curve = orbital.state(
-                e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument, turn, p.body.mu
-            )[0]
-            found.append(Reference("initial orbit", "initial", curve))
+            found.append(Reference("initial orbit", "initial", _ellipse(e, turn, p.body.mu)))
+    if aim is not None:
+        found.append(Reference(aim[0], "target", _ellipse(aim[1], turn, p.body.mu)))
     time = np.linspace(0.0, p.scene.propagation.duration, 2000)
     found += [Reference(name, "approximation", way.positions(time)) for name, way in p.approximations.items()]
     found += [Reference(name, "planet", orbit) for name, orbit in planets.items()]
     return tuple(found)
+
+
+def _ellipse(orbit: orbital.Elements, turn, mu):
+    """Points (n, 3) m of an orbit at true anomalies (n,) rad."""
+    e = orbit
+    return orbital.state(e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument, turn, mu)[0]
+
+
+def _target(p: Plan) -> tuple[str, orbital.Elements] | None:
+    """Name and elements of the orbit that a scene wants to reach, or that its law steers towards."""
+    wanted, law = p.scene.target, p.scene.steering
+    if wanted is None:
+        if law is None or law.kind != "lyapunov":
+            return None
+        wanted = law
+    elif wanted.planet is not None:
+        name = wanted.planet.capitalize()
+        return wanted.name or f"orbit of {name}", ephemeris.planet_ellipse(name, epoch_of(p.scene))
+    size = getattr(wanted, "radius", None) or wanted.semi_major_axis
+    shape = (size, wanted.eccentricity, wanted.inclination, wanted.raan, wanted.argument, 0.0)
+    return getattr(wanted, "name", None) or "target orbit", orbital.Elements(*shape)
 
 
 def _shells(p: Plan) -> tuple[Shell, ...]:

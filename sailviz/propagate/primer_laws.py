@@ -11,7 +11,7 @@ import numpy as np
 
 from sailviz import steering as law
 from sailviz.compiled import called, compiled
-from sailviz.optimal_steering import towards_primer
+from sailviz.optimal_steering import steer, towards_primer
 from sailviz.primers import locally_optimal_primer, lyapunov_primer
 from sailviz.propagate import row as at
 from sailviz.propagate.plugs import plug_address
@@ -52,11 +52,15 @@ def normal_plug() -> int:
 
 @compiled
 def observe_primer(time, states, p):
-    """Unit primer vectors (n, 3), inertial, at times (n,) s and states (7, n)."""
-    out = np.empty((len(time), 3))
+    """Unit primer vectors (n, 3), inertial, and h (n,), the thrust along them as a share of the full one (0 where the
+    law wants none), at times (n,) s and states (7, n)."""
+    out, support = np.empty((len(time), 3)), np.empty(len(time))
     for i in range(len(time)):
         s = states[:, i]
         lx, ly, lz = primer(time[i], s[0], s[1], s[2], s[3], s[4], s[5], p)
         size = np.sqrt(lx * lx + ly * ly + lz * lz)
         out[i, 0], out[i, 1], out[i, 2] = lx / size, ly / size, lz / size
-    return out
+        r = np.sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
+        c = min(max((out[i, 0] * s[0] + out[i, 1] * s[1] + out[i, 2] * s[2]) / r, -1.0), 1.0)
+        support[i] = steer(int(p[at.STEER_AS]), p, at.STEER_AS + 1, c, np.sqrt(1.0 - c * c), 0.0)[2]
+    return out, support

@@ -1,0 +1,259 @@
+"""The command that answers how fast a sail gets somewhere, and writes the flight down as a scene."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+
+from sailviz.cli_shared import BAD_INPUT, EXPECTATION_FAILED, progress_bar
+from sailviz.constants import AU, DAY
+
+TABLE_MM_S2 = (2.0, 1.5, 1.0, 0.75, 0.5, 0.35, 0.25)
+
+
+@click.command()
+@click.argument("origin", metavar="FROM")
+@click.argument("target", metavar="TO", required=False)
+@click.option(
+    "--sail",
+    "sails",
+    multiple=True,
+    metavar="NAME",
+    help="ideal (default), eta-perfect, jpl-1978, jpl-2015, electric-sail, electric-sail-original, ...-updated or "
+    "...-polynomial. Several with --table.",
+)
+@click.option(
+    "-a", "--acceleration", type=float, default=1.0, show_default=True, metavar="MM_S2", help="At 1 au, in mm/s²."
+)
+@click.option("--orbits", is_flag=True, help="In space, between the planets' elliptic orbits, both anomalies free.")
+@click.option("--date", metavar="DATE", help="Meet the planet itself, leaving on this date, e.g. 2030-01-01.")
+@click.option("--window", type=float, metavar="DAYS", help="With --date: leave on the best day of so many.")
+@click.option("--dates", type=click.IntRange(2, 400), default=41, show_default=True, help="Of a window, looked at.")
+@click.option("--radius-au", type=float, metavar="AU", help="To a circle of this radius instead of TO.")
+@click.option("--inclination-deg", type=float, metavar="DEG", help="Of the circle aimed at, to the ecliptic.")
+@click.option("--starts", type=click.IntRange(1, 200), help="Departure points tried with --orbits (24).")
+@click.option("--table", "as_table", is_flag=True, help="Flight times over the acceleration, between circles.")
+@click.option("-o", "--output", metavar="FILE", help="Write the flight as a scene that sailviz run flies.")
+@click.option(
+    "--form",
+    type=click.Choice(["costates", "table"]),
+    default="costates",
+    show_default=True,
+    help="How the scene steers: from initial costates, or by a table of attitudes.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print what was found for a script to read.")
+@click.option("-q", "--quiet", is_flag=True, help="Print the flight time in days only.")
+def transfer(
+    origin, target, sails, acceleration, orbits, date, window, dates, radius_au, inclination_deg, starts, as_table,
+    output, form, as_json, quiet,
+):  # fmt: skip
+    """Find the fastest flight of a sail from one orbit to another, and how it must be steered.
+
+    FROM and TO are planets, mercury to saturn, or ceres; by default their orbits are circles in one plane. Exit code 1
+    where no flight was found; the nearest one is then told.
+    """
+    sails = sails or ("ideal",)
+    try:
+        _agree(target, radius_au, inclination_deg, orbits, date, window, sails, as_table, output, acceleration)
+        from sailviz import transfers
+        from sailviz.design import costates
+
+        _say_if_compiling(costates.propagate_batch, quiet or as_json)
+        start = transfers.place(origin)
+        end = _aim(transfers, target, radius_au, inclination_deg)
+        if as_table:
+            _table(transfers, start, end, sails, quiet, as_json)
+            return
+        departure = None if date is None else date if window is None else _window(date, window)
+        with _progress(f"{start.name} to {end.name}", quiet or as_json) as progress:
+            options = {"orbits": orbits, "departure": departure, "starts": starts, "dates": dates}
+            found = transfers.find(start, end, sails[0], acceleration * 1e-3, progress=progress, **options)
+        text = transfers.scene_of(found, form) if output and found.flight.feasible else None
+    except ValueError as error:
+        click.echo(str(error), err=True)
+        raise click.exceptions.Exit(BAD_INPUT) from None
+    if as_json:
+        click.echo(json.dumps(_summary(found), indent=2))
+    elif quiet and found.flight.feasible:
+        click.echo(f"{found.flight.time / DAY:.6f}")
+    else:
+        click.echo("\n".join(_words(transfers, found)))
+    if not found.flight.feasible:
+        raise click.exceptions.Exit(EXPECTATION_FAILED)
+    if text is not None:
+        _write(output, text, quiet or as_json)
+
+
+def _agree(target, radius_au, inclination_deg, orbits, date, window, sails, as_table, output, acceleration):
+    """ValueError for what does not go together."""
+    if (target is None) == (radius_au is None):
+        raise ValueError("Say where to: a planet, or a circle by --radius-au.")
+    if inclination_deg is not None and radius_au is None:
+        raise ValueError("--inclination-deg is that of a circle: give --radius-au with it.")
+    if date is not None and (orbits or radius_au is not None):
+        raise ValueError("--date meets a planet where it is: neither --orbits nor --radius-au go with it.")
+    if window is not None and date is None:
+        raise ValueError("--window counts its days from a --date.")
+    if window is not None and not 0 < window <= 36525:
+        raise ValueError("--window must be a number of days above 0 and not more than a century.")
+    if as_table and (orbits or date or output or inclination_deg):
+        raise ValueError("--table shows flights between circles: no --orbits, --date, --inclination-deg or -o.")
+    if len(sails) > 1 and not as_table:
+        raise ValueError("Several sails are compared with --table.")
+    if not (math.isfinite(acceleration) and acceleration > 0):
+        raise ValueError(f"--acceleration must be above 0 mm/s², is {acceleration:g}.")
+
+
+def _aim(transfers, target, radius_au, inclination_deg):
+    if radius_au is None:
+        return transfers.place(target)
+    return transfers.circle(radius_au * AU, math.radians(inclination_deg or 0.0))
+
+
+def _window(date, days):
+    import numpy as np
+
+    try:
+        first = np.datetime64(date, "s")
+    except ValueError:
+        raise ValueError(f"{date!r} is no date: write 2030-01-01") from None
+    return first, first + np.timedelta64(round(days * DAY), "s")
+
+
+def _say_if_compiling(compiled, quiet):
+    from sailviz.compiled import is_compiled
+
+    if not quiet and not is_compiled(compiled):
+        click.echo("Compiling the search for this machine: once, about a minute.", err=True)
+
+
+@contextmanager
+def _progress(title, quiet):
+    with progress_bar(title, quiet) as bar:
+        yield None if bar is None else lambda share, words: bar(min(max(share, 0.0), 1.0))
+
+
+def _words(transfers, found):
+    """What was found, line by line."""
+    import numpy as np
+
+    flight = found.flight
+    craft = transfers.device_words(flight.device)
+    ways = {
+        "circles": "between circles in one plane",
+        "orbits": "between orbits in space, both anomalies free",
+        "rendezvous": "to meet the planet where it is",
+    }
+    yield f"{found.origin.name} to {found.target.name}, {ways[found.kind]}"
+    yield f"{craft}, {flight.characteristic_acceleration * 1e3:g} mm/s² at 1 au"
+    if not flight.feasible:
+        yield f"  No flight found: {flight.reason.removeprefix('no flight found: ')}."
+        return
+    rows = [("flight time", f"{flight.time / DAY:.6f} d, {flight.revolutions:.4f} revolutions about the Sun")]
+    if found.kind == "rendezvous":
+        rows += [("departure", _day(flight.departure)), ("arrival", _day(flight.arrival))]
+    elif found.kind == "orbits":
+        anomalies = f"{np.degrees(flight.departure_anomaly):.4f}° and {np.degrees(flight.arrival_anomaly):.4f}°"
+        rows += [("true anomalies", f"{anomalies} at departure and arrival")]
+    rows += [("costates", " ".join(f"{x:.10g}" for x in flight.costates))]
+    of = "radius, radial and transverse speed; mu = r0 = 1" if found.kind == "circles" else "position, velocity; 1 au"
+    rows += [("", f"of {of}, H = +1: minus the days won per unit, in {_unit(found):.4f} d")]
+    position, _, switches = transfers.path_of(flight)
+    rows += [("closest to the Sun", f"{np.linalg.norm(position, axis=1).min() / AU:.4f} au")]
+    if len(switches):
+        rows += [("thrust switches at", ", ".join(f"{t / DAY:.3f}" for t in switches) + " d")]
+    rows += [("residual", f"{flight.residual:.1e}, Hamiltonian drift {flight.hamiltonian_drift:.1e}")]
+    rows += [("local solutions", f"{flight.solutions} found")]
+    for name, value in rows:
+        yield f"  {name:<19}{value}"
+    yield "  " + flight.claim[0].upper() + flight.claim[1:] + ("" if flight.claim.endswith(".") else ".")
+    if getattr(flight, "window", None) is not None:
+        yield "  Leaving on       takes, days"
+        for day, time in zip(flight.window.departures, flight.window.times, strict=True):
+            took = f"{time / DAY:9.3f}" if np.isfinite(time) else "none found"
+            yield f"  {np.datetime_as_string(day, 'D')}       {took}"
+
+
+def _unit(found):
+    """The canonical unit of time, d."""
+    from sailviz.design.costates import TIME_UNIT
+
+    radius = found.origin.orbit.semi_major_axis / AU if found.kind == "circles" else 1.0
+    return radius**1.5 * TIME_UNIT / DAY
+
+
+def _day(moment):
+    import numpy as np
+
+    return np.datetime_as_string(moment, "m").replace("T", " ") + " UTC"
+
+
+def _summary(found):
+    """What was found, for JSON."""
+    flight = found.flight
+    values = {
+        "kind": found.kind,
+        "from": found.origin.name,
+        "to": found.target.name,
+        "sail": flight.device,
+        "characteristic_acceleration_mm_s2": flight.characteristic_acceleration * 1e3,
+        "found": flight.feasible,
+        "claim": flight.claim,
+        "time_d": _known(flight.time / DAY),
+        "revolutions": _known(flight.revolutions),
+        "costates": [_known(x) for x in flight.costates],
+        "residual": _known(flight.residual),
+        "hamiltonian_drift": _known(flight.hamiltonian_drift),
+        "local_solutions": flight.solutions,
+    }
+    if found.kind == "rendezvous":
+        values |= {"departure": str(flight.departure), "arrival": str(flight.arrival)}
+    return values
+
+
+def _known(value):
+    """A number for JSON, which has no NaN."""
+    return float(value) if math.isfinite(value) else None
+
+
+def _table(transfers, start, end, sails, quiet, as_json):
+    """Flight times over the acceleration, one column per sail."""
+    import numpy as np
+
+    for sail in sails:
+        transfers.canonical_sail(sail, 1e-3)  # ValueError for what is no sail, before the work begins
+    with _progress(f"{start.name} to {end.name}", quiet or as_json) as progress:
+        found = transfers.flight_times(start, end, sails, np.array(TABLE_MM_S2) * 1e-3, progress=progress)
+    if as_json:
+        days = [[None if np.isnan(x) else x / DAY for x in row] for row in found.time]
+        values = {"characteristic_acceleration_mm_s2": TABLE_MM_S2, "sails": sails, "time_d": days}
+        click.echo(json.dumps(values, indent=2))
+        return
+    click.echo(f"{start.name} to {end.name}, between circles in one plane: days (revolutions), best found")
+    width = max(22, *(len(sail) + 2 for sail in sails))
+    click.echo("  mm/s²" + "".join(sail.rjust(width) for sail in sails))
+    for a, times, turns in zip(TABLE_MM_S2, found.time, found.revolutions, strict=True):
+        cells = ["none found" if np.isnan(t) else f"{t / DAY:.4f} ({n:.3f})" for t, n in zip(times, turns, strict=True)]
+        click.echo(f"{a:7.2f}" + "".join(cell.rjust(width) for cell in cells))
+
+
+def _write(output, text, quiet):
+    if output == "-":
+        sys.stdout.write(text)
+        return
+    try:
+        Path(output).parent.mkdir(parents=True, exist_ok=True)
+        Path(output).write_text(text, encoding="utf-8")
+    except OSError as error:
+        click.echo(f"cannot write {output}: {(error.strerror or str(error)).lower()}", err=True)
+        raise click.exceptions.Exit(BAD_INPUT) from None
+    if not quiet:
+        click.echo(f"Wrote {output}; fly it with: sailviz run {output}")
+
+
+COMMANDS = (transfer,)

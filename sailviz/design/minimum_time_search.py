@@ -27,6 +27,7 @@ GOAL = 1e-9  # largest miss of a solution
 ROUNDINGS = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 0.0)  # of the switching, on the way to the true law
 FOLLOWED = 0.03  # the rounding that continuation keeps
 KEPT, CHILDREN, ZOOMS = 24, 16, 3
+PIECE, MOST_STEPS_OF_A_PIECE, DIVE = 2.0, 150, 0.02  # of screened flights: time, steps; radius
 WORKERS = min(8, os.cpu_count() or 1)
 
 
@@ -57,22 +58,34 @@ class Search:
 @compiled
 def screen(starts, span, samples, kind, p, eps, tolerance, target, miss, when):
     """Nearest approach of flights from starts (n, 12) to a planar orbit: miss (n,) in semi-latus rectum and
-    eccentricity vector, when (n,) the time of it, looked for at so many samples of the span."""
-    times, rows = np.linspace(0.0, span, samples), np.empty((samples, SIZE))
-    switches, end = np.empty(0), np.empty(SIZE)
+    eccentricity vector, when (n,) the time of it, looked for at so many samples of the span.
+
+    Flown in pieces, so that one that dives into the Sun is given up before it costs thousands of steps.
+    """
+    pieces = int(span / PIECE) + 1
+    each = max(2, samples // pieces)
+    stretch = span / pieces
+    times, rows = np.linspace(0.0, stretch, each + 1), np.empty((each + 1, SIZE))
+    switches, y, end = np.empty(0), np.empty(SIZE), np.empty(SIZE)
     for i in range(len(starts)):
-        rows[:, 0] = np.nan
-        propagate_compiled(starts[i], span, kind, p, eps, tolerance, times, rows, switches, end)
         best, at = np.inf, span
-        for k in range(1, samples):
-            x, y, vx, vy = rows[k, 0], rows[k, 1], rows[k, 3], rows[k, 4]
-            r = np.sqrt(x * x + y * y)
-            h = x * vy - y * vx
-            ex, ey = vy * h - x / r - target[1], -vx * h - y / r - target[2]
-            size = h * h / target[0] - 1.0
-            m = size * size + ex * ex + ey * ey
-            if m < best:
-                best, at = m, times[k]
+        y[:] = starts[i]
+        for piece in range(pieces):
+            rows[:, 0] = np.nan
+            steps = propagate_compiled(y, stretch, kind, p, eps, tolerance, times, rows, switches, end)[2]
+            for k in range(1, each + 1):
+                px, py, vx, vy = rows[k, 0], rows[k, 1], rows[k, 3], rows[k, 4]
+                r = np.sqrt(px * px + py * py)
+                h = px * vy - py * vx
+                ex, ey = vy * h - px / r - target[1], -vx * h - py / r - target[2]
+                size = h * h / target[0] - 1.0
+                m = size * size + ex * ex + ey * ey
+                if m < best:
+                    best, at = m, piece * stretch + times[k]
+            near = end[0] * end[0] + end[1] * end[1]
+            if steps > MOST_STEPS_OF_A_PIECE or not (near > DIVE * DIVE):
+                break
+            y[:] = end
         miss[i], when[i] = np.sqrt(best), at
 
 

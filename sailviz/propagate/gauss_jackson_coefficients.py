@@ -3,8 +3,8 @@
 With the backward difference D = 1 - E^-1 and a step h, h d/dt = -ln(1 - D). So the predictors are
 r(n+1) = h^2 (sum2(n) + sigma_2 a + sigma_3 D a + ...) and v(n+1) = h (sum1(n) + gamma_1 a + gamma_2 D a + ...) with
 sum gamma_j x^j = -x / ((1 - x) ln(1 - x)) and sum sigma_j x^j = x^2 / ((1 - x) ln(1 - x)^2); the correctors at n + 1
-lack the factor 1 / (1 - x). Source: Henrici, Discrete Variable Methods in Ordinary Differential Equations (1962),
-chapters 5 and 6, re-derived.
+lack the factor 1 / (1 - x). Re-derived; a textbook matter, from memory in Henrici, Discrete Variable Methods in
+Ordinary Differential Equations (1962), chapters 5 and 6.
 
 The sums are formed over the accelerations themselves, with large alternating ordinate coefficients c_i. Those of the
 position's corrector must not be rounded one by one: errors of 1e-14 in them push along the track and cost 1e-7 of the

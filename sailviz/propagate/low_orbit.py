@@ -9,7 +9,7 @@ import numba
 import numpy as np
 
 from sailviz.compiled import called, compiled
-from sailviz.constants import ELEMENTARY_CHARGE, ROTATION_EARTH
+from sailviz.constants import ELEMENTARY_CHARGE, MU_EARTH, ROTATION_EARTH
 from sailviz.environment import atmosphere, magnetic, sun
 from sailviz.environment import ionosphere as plasma
 from sailviz.environment.eclipse import NO_SHADOW, sunlit
@@ -122,7 +122,7 @@ def brake_force(t, x, y, z, vx, vy, vz, r, density, ion_mass, light, p):
         hx, hy, hz = qx - along * sx, qy - along * sy, qz - along * sz
         across = np.sqrt(hx * hx + hy * hy + hz * hz)
         push = per_length(density, ion_mass, across, voltage, p)
-        tangent = push * r * r * r / (6.0 * p[at.MU] * p[at.TIP])
+        tangent = push * r * r * r / (6.0 * MU_EARTH * p[at.TIP])
         c = 1.0 / np.sqrt(1.0 + tangent * tangent)
         k = c * tangent / across
         sx, sy, sz = c * sx + k * hx, c * sy + k * hy, c * sz + k * hz

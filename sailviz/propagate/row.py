@@ -5,7 +5,7 @@ Tables stand behind the fixed places; where each begins is written in the row it
 
 from __future__ import annotations
 
-MU, J2_STRENGTH, SURFACE_RADIUS, ROTATION = 0, 1, 2, 3
+MU, J2_STRENGTH, SURFACE_RADIUS, ROTATION = 0, 1, 2, 3  # mu is for gravity alone: gauss_jackson puts a 0 there
 STEERING = 4  # three numbers of the steering law
 DEVICE = 8  # up to five numbers of the device
 PLASMA = (

@@ -3,9 +3,9 @@
 Each step predicts position and velocity from LAGS accelerations, evaluates the force once, corrects, and adds to the
 acceleration what the correction changes in the central attraction (to first order; the change of everything else is a
 thousandth of that), which makes it as stable as a method with two evaluations. The method is the one of Berry and
-Healy, Implementation of Gauss-Jackson Integration for Orbit Propagation, J. Astronaut. Sci. 52 (2004), a paper that
-was not read: the formulae are re-derived in gauss_jackson_coefficients. What is new here is against rounding, which
-rules the error of a year: the central attraction is kept with the part that a double loses, and so is the position at which
+Healy, Implementation of Gauss-Jackson Integration for Orbit Propagation, J. Astronaut. Sci. 52 (2004), a paper that was
+not read: the formulae are re-derived in gauss_jackson_coefficients. What is new here is against rounding, which rules
+the error of a year: the central attraction is kept with the part that a double loses, and so is the position at which
 it is taken.
 
 Everything that is no run of equal steps is done by error-controlled steps of DOP853: the LAGS points that the method

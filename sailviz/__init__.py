@@ -8,6 +8,7 @@
 The verbs are loaded on first use, so that `import sailviz` costs next to nothing. SI and radians throughout.
 """
 
+from functools import cache
 from importlib import import_module
 
 _WHERE = {
@@ -22,8 +23,11 @@ _WHERE = {
     "Recording": "sailviz.recording",
     "compare": "sailviz.recording.comparison",
     "Comparison": "sailviz.recording.comparison",
+    "sweep": "sailviz.sweeps",
+    "Sweep": "sailviz.sweeps",
     "export": "sailviz.recording.exporter",
     "show": "sailviz.recording.notebook",
+    "SweepError": "sailviz.sweep_store",
     "SceneError": "sailviz.errors",
     "PropagationError": "sailviz.errors",
     "RecordingError": "sailviz.errors",
@@ -31,6 +35,7 @@ _WHERE = {
 __all__ = [*_WHERE, "__version__"]
 
 
+@cache
 def _version() -> str:
     from importlib.metadata import PackageNotFoundError, version
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import click
 
-from sailviz import cli_figures, cli_pictures, cli_recordings, cli_transfer
+from sailviz import cli_figures, cli_pictures, cli_recordings, cli_sweep, cli_transfer
 from sailviz.cli_shared import (
     EXPECTATION_FAILED,
     collecting_failures,
@@ -33,8 +33,9 @@ def main():
     """Trajectories of solar sails, electric sails and plasma brakes: computed, recorded, replayed."""
 
 
-for _command in (*cli_recordings.COMMANDS, *cli_pictures.COMMANDS, *cli_figures.COMMANDS, *cli_transfer.COMMANDS):
-    main.add_command(_command)
+for _room in (cli_recordings, cli_pictures, cli_figures, cli_sweep, cli_transfer):
+    for _command in _room.COMMANDS:
+        main.add_command(_command)
 
 
 scenes_argument = click.argument("scenes", nargs=-1, required=True, metavar="SCENE...")

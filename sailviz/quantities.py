@@ -6,6 +6,7 @@ Each is a function of a Run giving one value per row, in SI.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 
@@ -114,6 +115,7 @@ class Quantity:
         return QUANTITIES[self.stem][1](run) / self.factor
 
 
+@cache
 def spellings() -> dict[str, Quantity]:
     """Every name that [[expect]] accepts."""
     return {

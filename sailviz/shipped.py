@@ -17,5 +17,15 @@ def shipped_folder(kind: str) -> Path:
 @cache
 def shipped_scenes() -> dict[str, Path]:
     """Name -> file of every shipped scene, e.g. "displaced/circular"."""
+    return {name: path for name, path in _named().items() if not name.startswith("sweeps/")}
+
+
+@cache
+def shipped_sweeps() -> dict[str, Path]:
+    """Name -> file of every shipped sweep, e.g. "sweeps/pitch-to-venus"."""
+    return {name: path for name, path in _named().items() if name.startswith("sweeps/")}
+
+
+def _named() -> dict[str, Path]:
     folder = shipped_folder("scenes")
     return {path.relative_to(folder).with_suffix("").as_posix(): path for path in sorted(folder.glob("*/*.toml"))}

@@ -1,0 +1,213 @@
+"""The command that flies a scene many times and writes one table. Heavy modules are imported inside."""
+
+from __future__ import annotations
+
+import json
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+
+import click
+
+from sailviz.cli_shared import (
+    BAD_INPUT,
+    EXPECTATION_FAILED,
+    INTERRUPTED,
+    RUN_FAILED,
+    say_if_compiling,
+    set_option,
+    values_of,
+)
+from sailviz.errors import RecordingError, SailvizError, SceneError
+
+
+@click.command()
+@click.argument("scene")
+@click.option(
+    "--vary",
+    multiple=True,
+    metavar="KEY=VALUES",
+    help="0.5:1.5:11, 0.1:10:21:log, 20,25,40, normal(1,0.05), uniform(a,b), lognormal(median,sigma), "
+    "gamma(shape,scale) or seed; repeatable.",
+)
+@click.option("--together", is_flag=True, default=None, help="Listed values step in pace instead of making a grid.")
+@click.option("--draws", type=click.IntRange(1), metavar="N", help="Flights per point of the grid.")
+@click.option("--seed", type=click.IntRange(0), metavar="N", help="Of the draws; 0 by default.")
+@click.option("--report", multiple=True, metavar="QUANTITY@MOMENT", help="To measure, e.g. radius_au@end; repeatable.")
+@click.option(
+    "--record",
+    multiple=True,
+    metavar="PICK",
+    help="Flights to record: 0,5, min:COLUMN, max:COLUMN, median:COLUMN, failed.",
+)
+@set_option
+@click.option("-o", "--output", metavar="FILE", help="Table to write; NAME-sweep.parquet in this folder by default.")
+@click.option(
+    "--engine",
+    default="processes",
+    show_default=True,
+    metavar="ENGINE",
+    help="processes, threads, serial, dask (a cluster on this machine) or dask://HOST:PORT.",
+)
+@click.option("--workers", type=click.IntRange(1), metavar="N", help="As many as there are cores by default.")
+@click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
+@click.option("--json", "as_json", is_flag=True, help="Print a summary that a script can read.")
+def sweep(scene, vary, together, draws, seed, report, record, settings, output, engine, workers, quiet, as_json):
+    """Fly a scene over a grid or over distributions of its keys, and write a table with a row per flight.
+
+    SCENE is a scene or a sweep file, or the name of a shipped one. A sweep that was interrupted or killed goes on where
+    it stopped when the same command is given again. Exit codes as for run: 1 if a flight missed an expectation of the
+    scene, 3 if one failed.
+    """
+    quiet = quiet or as_json
+    path = Path(output or f"{Path(scene).stem}-sweep.parquet")
+    try:
+        from sailviz.sweep_definition import define
+
+        definition, wanted = define(scene, _varied(vary), draws, seed, _listed(report), together, values_of(settings))
+        from sailviz.sweeps import fly_all
+
+        say_if_compiling(quiet)
+        with _progress(path.stem, definition.flights, quiet) as progress:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            found = fly_all(definition, [*wanted, *_listed(record)], None, engine, workers, path, progress)
+    except KeyboardInterrupt:
+        _say_interrupted(path)
+        sys.exit(INTERRUPTED)
+    except (SceneError, RecordingError, OSError) as error:
+        click.echo(str(error), err=True)
+        sys.exit(BAD_INPUT)
+    except SailvizError as error:
+        click.echo(f"{scene}: {error}", err=True)
+        sys.exit(BAD_INPUT)
+    if as_json:
+        click.echo(json.dumps(_facts(found, definition), indent=2))
+    elif not quiet:
+        _tell(found, definition)
+    if found.failed:
+        sys.exit(RUN_FAILED)
+    if found.missed:
+        sys.exit(EXPECTATION_FAILED)
+
+
+def _varied(items) -> dict[str, str]:
+    found = {}
+    for item in items:
+        key, equals, text = item.partition("=")
+        if not equals or not key.strip():
+            raise click.BadParameter(f"{item!r} is not KEY=VALUES", param_hint="--vary")
+        if key.strip() in found:
+            raise click.BadParameter(f"{key.strip()} is given twice", param_hint="--vary")
+        found[key.strip()] = text.strip()
+    return found
+
+
+def _listed(items) -> list[str]:
+    return [word.strip() for item in items for word in item.split(",") if word.strip()]
+
+
+@contextmanager
+def _progress(title, flights, quiet):
+    """A bar with flights, their rate and the time left, silent when not on a terminal."""
+    if quiet or not sys.stderr.isatty():
+        yield None
+        return
+    from tqdm import tqdm
+
+    with tqdm(total=flights, desc=title[:40], unit=" flights", delay=1, leave=False, smoothing=0.1) as bar:
+        begun = []
+
+        def progress(done, _):
+            if not begun:  # flights done before say nothing of the rate
+                begun.append(done)
+                bar.initial = bar.n = done
+            bar.update(done - bar.n)
+
+        yield progress
+
+
+def _say_interrupted(path: Path) -> None:
+    rows = 0
+    if path.exists():
+        import pyarrow.parquet as pq
+
+        rows = pq.read_metadata(path).num_rows
+    where = f"{path} holds the {rows:,} flights that are done" if rows else "no flight was done yet"
+    click.echo(f"Interrupted: {where}. The same command goes on from there.", err=True)
+
+
+def _statistics(found, names) -> dict[str, dict[str, float]]:
+    """Of every measured column: how many flights have it, mean, standard deviation, least, median, largest."""
+    import numpy as np
+
+    table = found.to_arrow(names)
+    statistics = {}
+    for name in names:
+        values = table[name].to_numpy()
+        values = values[np.isfinite(values)]
+        if len(values):
+            statistics[name] = {
+                "flights": len(values),
+                "mean": float(values.mean()),
+                "deviation": float(values.std(ddof=1)) if len(values) > 1 else 0.0,
+                "min": float(values.min()),
+                "median": float(np.median(values)),
+                "max": float(values.max()),
+            }
+    return statistics
+
+
+def _measured(definition) -> list[str]:
+    return list(dict.fromkeys([*definition.expected, *definition.report]))
+
+
+def _facts(found, definition) -> dict:
+    return {
+        "table": str(found.path),
+        "flights": found.flights,
+        "failed": found.failed,
+        "missed": found.missed,
+        "resumed": found.resumed,
+        "recordings": {str(number): str(path) for number, path in found.recordings.items()},
+        "statistics": _statistics(found, _measured(definition)),
+    }
+
+
+def _tell(found, definition) -> None:
+    before = f", {found.resumed:,} of them done before" if found.resumed else ""
+    click.echo(f"{definition.scene().title}: {found.flights:,} flights{before}")
+    rows = [("quantity", "flights", "mean", "deviation", "min", "median", "max")]
+    for name, numbers in _statistics(found, _measured(definition)).items():
+        rows.append((name, f"{numbers['flights']:,}", *(f"{numbers[word]:.7g}" for word in rows[0][2:])))
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows if len(rows) > 1 else ():
+        cells = [
+            cell.rjust(width) if i else cell.ljust(width)
+            for i, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ]
+        click.echo("  ".join(cells))
+    if found.missed:
+        click.echo(f"{found.missed:,} missed an expectation of the scene")
+    if found.failed:
+        click.echo(f"{found.failed:,} failed:")
+        for reason, count in _reasons(found):
+            click.echo(f"  {count:,}: {reason}")
+    click.echo(f"Wrote {found.path}")
+    for number, path in found.recordings.items():
+        click.echo(f"Recorded flight {number}: {path}")
+
+
+def _reasons(found, most=5) -> list[tuple[str, int]]:
+    """The commonest reasons of failure, shortened, numbers left out so that equal ones count together."""
+    import re
+    from collections import Counter
+
+    words = Counter(
+        re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", reason)[:160]
+        for reason in found.to_arrow(["reason"])["reason"].to_pylist()
+        if reason
+    )
+    return words.most_common(most)
+
+
+COMMANDS = (sweep,)

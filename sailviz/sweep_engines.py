@@ -1,0 +1,114 @@
+"""Where the flights of a sweep fly: this thread, threads, processes of this machine, or Dask's workers anywhere."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import contextmanager
+
+from sailviz.scene_faults import nearest
+from sailviz.sweep_store import SweepError
+
+ENGINES = ("processes", "threads", "serial", "dask")
+
+
+class SerialExecutor(Executor):
+    """Does what is submitted at once, in this thread."""
+
+    _max_workers = 1
+
+    def submit(self, fn, /, *args, **kwargs) -> Future:
+        """A future that is done."""
+        future: Future = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:
+            future.set_exception(error)
+        return future
+
+
+def processes(workers: int | None = None) -> ProcessPoolExecutor:
+    """Processes that start afresh on every system, so that no thread or lock of this one is copied, and that end with
+    it, however it ends."""
+    return ProcessPoolExecutor(
+        workers or os.cpu_count() or 1, mp_context=multiprocessing.get_context("spawn"), initializer=_begin_worker
+    )
+
+
+def _begin_worker() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    multiprocessing.parent_process().join()
+    os._exit(1)
+
+
+def abandon(executor: Executor) -> None:
+    """Drop what waits, and end our own processes in the middle of what they do."""
+    running = list((getattr(executor, "_processes", None) or {}).values())
+    executor.shutdown(wait=False, cancel_futures=True)
+    for process in running if isinstance(executor, ProcessPoolExecutor) else ():
+        process.terminate()
+
+
+def check_engine(name: str) -> tuple[str, str]:
+    """(kind, address) of an engine's name. SweepError if there is none."""
+    kind, _, address = name.partition("://")
+    if kind not in ENGINES or (address and kind != "dask"):
+        raise SweepError(f'there is no engine "{name}". {nearest(kind, ENGINES)} Dask elsewhere is dask://HOST:PORT.')
+    return kind, address
+
+
+@contextmanager
+def engine(name: str, workers: int | None = None) -> Iterator[Executor | None]:
+    """The executor of an engine's name; None for processes, which the sweep itself starts and renews.
+
+    name : "processes", "threads", "serial", "dask" (a cluster on this machine) or "dask://host:port" of a scheduler.
+    """
+    kind, address = check_engine(name)
+    if kind == "processes":
+        yield None
+    elif kind == "serial":
+        yield SerialExecutor()
+    elif kind == "threads":
+        with ThreadPoolExecutor(workers or os.cpu_count() or 1) as pool:
+            yield pool
+    else:
+        with _dask(address, workers) as client, client.get_executor() as executor:
+            yield executor
+
+
+@contextmanager
+def _dask(address: str, workers: int | None):
+    try:
+        from distributed import Client, LocalCluster
+    except ImportError:
+        raise SweepError('the engine "dask" needs the extra "dask": pip install "sailviz[dask]"') from None
+    if address:
+        try:
+            client = Client(f"tcp://{address}", timeout=10)
+        except (OSError, TimeoutError, ValueError) as error:
+            raise SweepError(f"no Dask scheduler answers at {address}: {error}") from None
+        with client:
+            yield client
+        return
+    count = workers or os.cpu_count() or 1
+    with (
+        LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None) as cluster,
+        Client(cluster) as client,
+    ):
+        yield client
+
+
+def workers_of(executor: Executor) -> int:
+    """How many flights an executor can fly at once, as far as it tells."""
+    client = getattr(executor, "_client", None)
+    if client is not None and hasattr(client, "ncores"):
+        return max(1, sum(client.ncores().values()))
+    return getattr(executor, "_max_workers", None) or os.cpu_count() or 1

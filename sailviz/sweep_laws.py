@@ -1,0 +1,185 @@
+"""What a key of a scene takes in a sweep: listed values or draws from a distribution, and how a person writes them.
+
+0.5:1.5:11          eleven values from 0.5 to 1.5, ends included     0.1:10:21:log   the same, even in the logarithm
+20,25,40            these values, numbers or words
+normal(1, 0.05)     drawn; also uniform(low, high), lognormal(median, sigma of the logarithm), gamma(shape, scale)
+seed                the flight's own seed, a whole number below 2^32: for keys such as environment.solar_wind.seed
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import tomllib
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from sailviz.scene_faults import nearest
+
+MOST_VALUES = 10_000_000
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Listed values of a key."""
+
+    key: str
+    values: tuple
+
+    def words(self):
+        """What the definition of a sweep keeps of it."""
+        return list(self.values)
+
+
+@dataclass(frozen=True)
+class _Law:
+    parameters: tuple[str, ...]
+    fault: Callable[..., str]  # of the parameters, "" if they will do
+    draw: Callable
+    centre: Callable[..., float]
+
+
+_LAWS = {
+    "normal": _Law(
+        ("mean", "deviation"),
+        lambda mean, deviation: "" if deviation >= 0 else "its deviation must be at least 0",
+        lambda rng, mean, deviation: rng.normal(mean, deviation),
+        lambda mean, deviation: mean,
+    ),
+    "uniform": _Law(
+        ("low", "high"),
+        lambda low, high: "" if low < high else "its low end must lie below its high end",
+        lambda rng, low, high: rng.uniform(low, high),
+        lambda low, high: (low + high) / 2,
+    ),
+    "lognormal": _Law(
+        ("median", "sigma"),
+        lambda median, sigma: "" if median > 0 and sigma >= 0 else "needs a median above 0 and a sigma of at least 0",
+        lambda rng, median, sigma: median * np.exp(sigma * rng.standard_normal()),
+        lambda median, sigma: median,
+    ),
+    "gamma": _Law(
+        ("shape", "scale"),
+        lambda shape, scale: "" if shape > 0 and scale > 0 else "needs shape and scale above 0",
+        lambda rng, shape, scale: rng.gamma(shape, scale),
+        lambda shape, scale: shape * scale,
+    ),
+}
+
+
+@dataclass(frozen=True)
+class Draw:
+    """A key that is drawn anew for every flight. law : name, or "seed" for the flight's own seed."""
+
+    key: str
+    law: str
+    parameters: tuple[float, ...] = ()
+
+    def centre(self):
+        """A value in the middle of the distribution."""
+        return 0 if self.law == "seed" else float(_LAWS[self.law].centre(*self.parameters))
+
+    def value(self, seed: int, cell: int, draw: int):
+        """The value of one flight: known from the sweep's seed, the key, the place on the grid and the draw's number
+        alone, so that neither workers nor order nor the other keys of the sweep change it."""
+        if self.law == "seed":
+            return flight_seed(seed, cell, draw)
+        own = int.from_bytes(hashlib.sha256(self.key.encode()).digest()[:8], "little")
+        return float(_LAWS[self.law].draw(np.random.default_rng([seed, own, cell, draw]), *self.parameters))
+
+    def words(self) -> str:
+        """What the definition of a sweep keeps of it."""
+        return self.law if self.law == "seed" else f"{self.law}({', '.join(f'{p:.17g}' for p in self.parameters)})"
+
+
+def flight_seed(seed: int, cell: int, draw: int) -> int:
+    """A flight's own seed, below 2^32."""
+    return int(np.random.SeedSequence([seed, cell, draw]).generate_state(1)[0])
+
+
+def axis(key: str, low: float, high: float, count, spacing: str = "linear") -> Axis:
+    """Values from low to high, both included; whole numbers where all of them are. ValueError says what is wrong."""
+    if isinstance(count, bool) or count != int(count) or not 1 <= count <= MOST_VALUES:
+        raise ValueError(f"a range has a whole number of values, 1 or more, not {count:g}.")
+    if not np.isfinite([low, high]).all():
+        raise ValueError("a range goes from one finite number to another.")
+    if spacing == "log":
+        if low <= 0 or high <= 0:
+            raise ValueError("a range even in the logarithm has ends above 0.")
+        values = np.geomspace(low, high, int(count))
+    else:
+        values = np.linspace(low, high, int(count))
+    values = values.tolist()
+    whole = isinstance(low, int) and isinstance(high, int) and all(value == int(value) for value in values)
+    return Axis(key, tuple(int(value) for value in values) if whole else tuple(values))
+
+
+def drawn(key: str, text: str) -> Draw:
+    """`normal(1, 0.05)` -> Draw. ValueError says what is wrong."""
+    if text.strip() == "seed":
+        return Draw(key, "seed")
+    found = re.fullmatch(r"\s*(\w+)\s*\(([^()]*)\)\s*", text)
+    if not found or found[1] not in _LAWS:
+        raise ValueError(f'"{text}" is not a distribution. {nearest(found[1] if found else text, [*_LAWS, "seed"])}')
+    law = _LAWS[found[1]]
+    usage = f"{found[1]}({', '.join(law.parameters)})"
+    try:
+        parameters = tuple(float(word) for word in found[2].split(","))
+    except ValueError:
+        raise ValueError(f'"{text.strip()}": write numbers, {usage}.') from None
+    if len(parameters) != len(law.parameters) or not np.isfinite(parameters).all():
+        raise ValueError(f'"{text.strip()}": needs {len(law.parameters)} finite numbers, {usage}.')
+    if fault := law.fault(*parameters):
+        raise ValueError(f'"{text.strip()}": {fault}.')
+    return Draw(key, found[1], parameters)
+
+
+def varied(key: str, wanted) -> Axis | Draw:
+    """What a key takes, from text as above or from values. ValueError says what is wrong."""
+    if isinstance(wanted, str):
+        return _from_text(key, wanted)
+    if isinstance(wanted, np.ndarray):
+        wanted = wanted.tolist()
+    values = wanted if isinstance(wanted, (list, tuple, range)) else [wanted]
+    values = tuple(value.item() if isinstance(value, np.generic) else value for value in values)
+    if not values:
+        raise ValueError("has no values.")
+    return Axis(key, values)
+
+
+def _from_text(key: str, text: str) -> Axis | Draw:
+    if text.strip() == "seed" or re.fullmatch(r"\s*[A-Za-z]\w*\s*\(.*\)\s*", text):
+        return drawn(key, text)
+    ends = text.split(":")
+    if len(ends) > 1 and (numbers := _numbers(ends[:3])):
+        spacing = ends[3].strip() if len(ends) == 4 else "linear"
+        if len(numbers) < 3 or len(ends) > 4 or spacing not in ("linear", "log"):
+            raise ValueError(f'"{text}": a range is LOW:HIGH:COUNT or LOW:HIGH:COUNT:log.')
+        return axis(key, *numbers, spacing)
+    if not text.strip():
+        raise ValueError("has no values.")
+    try:
+        return varied(key, tomllib.loads(f"values = [{text}]")["values"])
+    except tomllib.TOMLDecodeError:
+        return varied(key, [_plain(word.strip()) for word in text.split(",")])
+
+
+def _numbers(words) -> list[int | float] | None:
+    """The numbers that words are, None if one is not (but a time of day, say)."""
+    found = []
+    for word in words:
+        try:
+            found.append(int(word) if word.strip().lstrip("+-").isdecimal() else float(word))
+        except ValueError:
+            return None
+    return found
+
+
+def _plain(word: str):
+    """A TOML value, or the word itself."""
+    try:
+        return tomllib.loads(f"value = {word}")["value"]
+    except tomllib.TOMLDecodeError:
+        return word

@@ -21,6 +21,7 @@ from sailviz import sweeps
 from sailviz.cli import main
 from sailviz.constants import AU, MU_SUN
 from sailviz.errors import SceneError
+from sailviz.shipped import shipped_sweeps
 from sailviz.sweep_definition import define
 from sailviz.sweep_engines import SerialExecutor
 from sailviz.sweep_laws import varied
@@ -145,6 +146,13 @@ def test_wind_is_drawn_anew_by_each_flights_own_seed():
     )
     assert list(found.table["environment.solar_wind.seed"]) == list(found.table["seed"])
     assert len(set(found.table["radius_au@end"])) == 3
+
+
+@pytest.mark.parametrize("name", shipped_sweeps())
+def test_a_shipped_sweep_can_be_flown(name):
+    definition, _ = define(name)
+    found = sailviz.sweep(definition.scene(), {axis.key: axis.values[:1] for axis in definition.axes}, engine="serial")
+    assert found.failed == 0
 
 
 # ---------------------------------------------------------------- where it is flown

@@ -1,32 +1,26 @@
-"""Which fixed pitch brings an ideal sail to Venus' distance first? Sweep it, record the fastest flight.
+"""How far does the time to Venus' distance scatter when pitch and mass are not quite what was asked for?
 
-Run it from anywhere: python sweep_pitch.py [fastest.rrd]
+Run it from anywhere: python sweep_pitch.py [venus.parquet]
 """
 
 import sys
 
-import numpy as np
-
 import sailviz
-from sailviz.constants import DAY
 
-scene = sailviz.load_scene("spirals/optical-sail").with_values(
-    {
-        "title": "Fastest fixed pitch to Venus' distance",
-        "device.film": "ideal",
-        "event": [{"kind": "radius", "name": "arrival", "radius_au": 0.723332, "stop": True}],
-        "expect": [],
-    }
-)
-
-flights = {}
-for pitch in np.arange(20.0, 60.0, 2.5):
-    run = sailviz.simulate(scene.with_values({"steering.pitch_deg": float(pitch)}))
-    if run.ended == "arrival":
-        flights[pitch] = run
-        print(f"pitch {pitch:4.1f} deg   {run.time[-1] / DAY:6.1f} d   {len(run)} rows")
-
-best = min(flights, key=lambda pitch: flights[pitch].time[-1])
-file = sys.argv[1] if len(sys.argv) > 1 else "fastest.rrd"
-sailviz.record(flights[best], file)
-print(f"Fastest at {best:g} deg; recorded {file}")
+if __name__ == "__main__":  # the flights go to processes, which read this file too
+    found = sailviz.sweep(
+        "spirals/optical-sail",
+        {"steering.pitch_deg": "normal(35, 0.5)", "device.mass_kg": "normal(250, 2)"},
+        draws=200,
+        values={
+            "event": [{"kind": "radius", "name": "arrival", "radius_au": 0.723332, "stop": True}],
+            "expect": [],
+        },
+        report=["time_d@arrival"],
+        record=["median:time_d@arrival"],
+        path=sys.argv[1] if len(sys.argv) > 1 else "venus.parquet",
+    )
+    days = found.table["time_d@arrival"]
+    print(f"{days.mean():.1f} d on average, standard deviation {days.std(ddof=1):.1f} d, {found.failed} failed")
+    for number, file in found.recordings.items():
+        print(f"Recorded flight {number}, the median: {file}")

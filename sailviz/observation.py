@@ -51,8 +51,6 @@ def low_orbit_columns(p: Plan, time, states, values) -> dict[str, np.ndarray]:
     columns = {"mean_altitude_m": axis - p.body.radius}
     if p.quasi_circular is not None:
         columns["quasi_circular_altitude_m"] = p.quasi_circular.altitude(time)
-    if around.height_above == "ellipsoid":
-        columns["altitude_over_ellipsoid_m"] = values[seen.ALTITUDE]
     if scene.epoch is not None:
         columns["earth_rotation_rad"] = ephemeris.greenwich_sidereal_time(epoch_of(scene), time)
     if watches_shadow(scene):
@@ -64,6 +62,8 @@ def low_orbit_columns(p: Plan, time, states, values) -> dict[str, np.ndarray]:
         columns["air_drag_N"] = values[seen.AIR_DRAG]
     if scene.device.kind == "plasma-brake":
         columns |= _brake_columns(scene, values, velocity)
+    if around.height_above == "ellipsoid":
+        columns["altitude_over_ellipsoid_m"] = values[seen.ALTITUDE]
     return columns
 
 

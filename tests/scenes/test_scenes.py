@@ -6,19 +6,23 @@ device, a steering law or an environment that is missing here fails until its ph
 
 from __future__ import annotations
 
+from datetime import datetime
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from numpy.polynomial.legendre import Legendre
 from scipy.integrate import solve_ivp
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, RegularGridInterpolator
 from scipy.optimize import brentq
 
+import sailviz
 from sailviz.expectations import check
-from sailviz.shipped import shipped_scenes
+from sailviz.shipped import shipped_folder, shipped_scenes
 
 AU, MU_SUN, MU_EARTH, RADIUS_EARTH = 149_597_870_700.0, 1.32712440018e20, 3.986004418e14, 6_378_137.0
-J2, ROTATION = 1.08262668e-3, 7.2921159e-5
+J2, J3, J4, ROTATION = 1.08262668e-3, -2.53265649e-6, -1.61962159e-6, 7.2921159e-5
 CHARGE, EPSILON = 1.602176634e-19, 8.8541878128e-12
 FILMS = {  # b1, b2, b3, efficiency
     "ideal": (0, 1, 0, 1),
@@ -38,7 +42,11 @@ def test_scene_fulfils_its_expectations(shipped_run, name):
 
 @pytest.mark.parametrize("name", SCENES)
 def test_scene_agrees_with_scipy(shipped_run, name):
-    """Within 1e-8 of the distance over twenty revolutions or 2 % of the run, whichever is shorter, and one at least."""
+    """Within 1e-8 of the distance over twenty revolutions or 2 % of the run, whichever is shorter, and one at least.
+
+    Where tables are looked up, which plain Python does slowly, two revolutions; and in steps of 10 s, since at the
+    scene's own tolerance the kinks of tables and the edges of the shadow cost up to a metre per revolution.
+    """
     scene, run = shipped_run(name)
     mu = body(scene)[0]
     r, v = run.position[0], run.velocity[0]
@@ -46,12 +54,28 @@ def test_scene_agrees_with_scipy(shipped_run, name):
     last = 0.02 * scene.propagation.duration
     if a > 0:
         turn = 2 * np.pi * np.sqrt(a**3 / mu)
-        last = max(turn, min(20 * turn, last))
-    rows = run.time <= last
+        last = max(turn, min((2 if tabled(scene) else 20) * turn, last))
+    runs = [(run, 1e-8)]
+    if tabled(scene):
+        own = {"duration_s": last, "outputs": 40, "tolerance": scene.propagation.tolerance}
+        fine = own | {"tolerance": 1e-13, "largest_step_s": 10, "integrator": "dop853"}
+        again = [sailviz.simulate(scene.with_values({"propagation": values})) for values in (own, fine)]
+        runs = [(again[0], 1e-6), (again[1], 1e-8)]
+    rows = runs[0][0].time <= last
     assert rows.sum() > 5
-    position = integrate(scene, np.concatenate([r, v, run.mass[:1]]), run.time[rows])
-    away = np.linalg.norm(run.position[rows] - position, axis=1) / np.linalg.norm(position, axis=1)
-    assert away.max() < 1e-8
+    position = integrate(scene, np.concatenate([r, v, run.mass[:1]]), runs[0][0].time[rows])
+    for flown, within in runs:
+        away = np.linalg.norm(flown.position[rows] - position, axis=1) / np.linalg.norm(position, axis=1)
+        assert away.max() < within
+
+
+def tabled(scene):
+    """Whether forces have kinks or jumps that no step can be told of."""
+    around = scene.environment
+    tables = [
+        getattr(part, "kind", "") in ("iri-2020", "nrlmsis-2.1") for part in (around.ionosphere, around.atmosphere)
+    ]
+    return any(tables) or getattr(scene.device, "eclipse", "on") != "on"
 
 
 # ---------------------------------------------------------------- the independent integration
@@ -60,6 +84,7 @@ def integrate(scene, state, times):
     breaks, factors = schedule(scene)
     edges = [*breaks[breaks < times[-1]], times[-1]]
     acceleration, mu = device(scene), body(scene)[0]
+    longest = 30.0 if tabled(scene) else np.inf
     rows = [state[None, :3]]
     scale = np.linalg.norm(state[:3])
     atol = 1e-16 * np.array([scale] * 3 + [np.sqrt(mu / scale)] * 3 + [state[6]])
@@ -68,7 +93,7 @@ def integrate(scene, state, times):
         # a piece belongs to the values at its beginning: time never quite reaches the next kink
         rhs = right_hand_side(scene, acceleration, factors[i], np.nextafter(end, begin))
         asked = np.unique([*inside, end])
-        y = solve_ivp(rhs, (begin, end), state, "DOP853", asked, rtol=1e-13, atol=atol).y
+        y = solve_ivp(rhs, (begin, end), state, "DOP853", asked, rtol=1e-13, atol=atol, max_step=longest).y
         rows.append(y[:3, np.isin(asked, inside)].T)
         state = y[:, -1]
     return np.concatenate(rows)
@@ -107,15 +132,17 @@ def schedule(scene):
 
 
 def right_hand_side(scene, acceleration, factor, latest):
-    mu, j2 = body(scene)[0], scene.environment.j2
+    mu, around = body(scene)[0], scene.environment
+    drag = air_drag(scene)
 
     def rhs(t, y):
         r, v, mass = y[:3], y[3:6], y[6]
         size = np.sqrt(r @ r)
         a = -mu * r / size**3
-        if j2:  # gradient of the potential -mu J2 R^2 (1 - 3 sin^2(latitude)) / (2 r^3)
-            s = (r[2] / size) ** 2
-            a = a - 1.5 * J2 * mu * RADIUS_EARTH**2 / size**5 * r * np.array([1 - 5 * s, 1 - 5 * s, 3 - 5 * s])
+        if around.j2:
+            a = a + oblate(around, r)
+        if drag is not None:
+            a = a + drag(t, r, v, mass)
         rate = 0.0
         a = a + third_body(scene, t, r)
         if factor and acceleration is not None:
@@ -354,34 +381,219 @@ def electric_sail(scene):
 
 
 def brake(scene):
+    """Coulomb drag of a charged tether: Janhunen's law, or the electric sail's for a positive one."""
     craft, profile, radius = scene.device, scene.environment.ionosphere, body(scene)[1]
-    spin = np.array([0, 0, ROTATION if scene.environment.corotation else 0.0])
+    assert scene.environment.magnetic_sensitivity == 0
+    law = scene.steering.kind if scene.steering else "vertical"
+    full = abs(craft.voltage)
+    table = density_factor = None
+    if profile.kind == "iri-2020":
+        table, density_factor = plasma_table(), profile.density_factor
+    limited = craft.power is not None or craft.eclipse != "on"
+
+    def plasma(t, r):
+        """(density, ion mass)."""
+        if table is not None:
+            n, mass = np.exp(table(place(scene, t, r))[:3]), table(place(scene, t, r))[3:]
+            levels, flux = [70.0, 145.0, 193.0], solar_flux(scene, t)
+            return density_factor * np.exp(np.interp(flux, levels, np.log(n))), np.interp(flux, levels, mass)
+        fade = np.exp((profile.reference_altitude - (np.linalg.norm(r) - radius)) / profile.scale_height)
+        return profile.density * fade, profile.ion_mass
+
+    def per_length(n, m, speed, voltage):
+        if voltage <= m * speed**2 / (2 * CHARGE):
+            return 0.0
+        if craft.polarity == "positive":
+            return 0.18 * (voltage - m * speed**2 / (2 * CHARGE)) * np.sqrt(EPSILON * m * n * speed**2)
+        sheath = np.sqrt(EPSILON * voltage / (CHARGE * n))
+        v_t = voltage / np.log(sheath / craft.wire_radius)
+        thickness = np.sqrt(EPSILON * v_t / (CHARGE * n))
+        return 3.864 * m * n * speed**2 * thickness * np.exp(-m * speed**2 / (2 * CHARGE * v_t))
+
+    def voltage_at(t, r, n, m, speed):
+        lit = not limited or sunlit(scene, t, r)
+        available = craft.power if lit else {"on": craft.power, "off": 0, "limited": craft.eclipse_power}[craft.eclipse]
+        if available is None:
+            return full
+        assert craft.polarity == "negative"
+
+        def excess(voltage):
+            rate = np.sqrt(2 * CHARGE * voltage / m + speed**2)
+            return (
+                voltage * CHARGE * n * craft.wire_diameter * craft.tether_length * rate / craft.efficiency - available
+            )
+
+        return full if excess(full) <= 0 else brentq(excess, 0.0, full, xtol=1e-12, rtol=1e-14)
 
     def push(t, r, v, mass):
         up = r / np.linalg.norm(r)
-        u = v - np.cross(spin, r)
-        u = u - (u @ up) * up
-        speed = np.linalg.norm(u)
-        fade = np.exp((profile.reference_altitude - (np.linalg.norm(r) - radius)) / profile.scale_height)
+        u = v - np.cross(spin_of_earth(scene), r)
+        level = u - (u @ up) * up
         if profile.kind == "exponential-force":
-            f = profile.force_per_length * fade
-        elif profile.kind == "exponential-density":
-            n, m = profile.density * fade, profile.ion_mass
-            sheath = np.sqrt(EPSILON * craft.voltage / (CHARGE * n))
-            v_t = craft.voltage / np.log(sheath / craft.wire_radius)
-            f = (
-                3.864
-                * m
-                * n
-                * speed**2
-                * np.sqrt(EPSILON * v_t / (CHARGE * n))
-                * np.exp(-m * speed**2 / (2 * CHARGE * v_t))
-            )
-        else:
-            raise NotImplementedError(profile.kind)
-        return -craft.tether_length * f / mass * u / speed, 0.0
+            height = np.linalg.norm(r) - radius
+            f = profile.force_per_length * np.exp((profile.reference_altitude - height) / profile.scale_height)
+            return -craft.tether_length * f / mass * level / np.linalg.norm(level), 0.0
+        n, m = plasma(t, r)
+        voltage = voltage_at(t, r, n, m, np.linalg.norm(u))
+        if law == "spinning":  # in the plane of motion: the mean of |sin|^3; about the velocity: all of it
+            share = 4 / (3 * np.pi) if scene.steering.plane == "along-track" else 1.0
+            return -share * craft.tether_length * per_length(
+                n, m, np.linalg.norm(u), voltage
+            ) / mass * u / np.linalg.norm(u), 0.0
+        along = up
+        if law == "gravity-gradient":  # moments about the hinge: drag of the hanging tether against 3 n^2 sin cos
+            ahead = level / np.linalg.norm(level)
+            force = craft.tether_length * per_length(n, m, np.linalg.norm(level), voltage)
+            tether = craft.tether_mass if craft.tether_mass is not None else 11e-6 * craft.tether_length
+            rate2 = MU_EARTH / np.linalg.norm(r) ** 3
+            lean = np.arctan(force / (6 * rate2 * (craft.tip_mass + tether / 3) * craft.tether_length))
+            along = np.cos(lean) * up + np.sin(lean) * ahead
+        across = u - (u @ along) * along
+        speed = np.linalg.norm(across)
+        return -craft.tether_length * per_length(n, m, speed, voltage) / mass * across / speed, 0.0
 
     return push
+
+
+# ---------------------------------------------------------------- what surrounds a low orbit
+def spin_of_earth(scene):
+    return np.array([0, 0, ROTATION if scene.environment.corotation else 0.0])
+
+
+def days_since_j2000(scene, t):
+    epoch = scene.epoch if isinstance(scene.epoch, datetime) else datetime(*scene.epoch.timetuple()[:3])
+    return (epoch.replace(tzinfo=None) - datetime(2000, 1, 1, 12)).total_seconds() / 86400 + t / 86400
+
+
+def mean_longitude(scene, t):
+    """Of the Sun, rad: the right ascension of the mean Sun, by which local time goes."""
+    if scene.epoch is None:
+        return (scene.environment.sun_right_ascension or 0.0) + 2 * np.pi * t / (365.25 * 86400)
+    return np.radians(280.460 + 0.9856474 * days_since_j2000(scene, t))
+
+
+def sun(scene, t):
+    """Unit vector to the Sun, equator of date: Astronomical Almanac, low precision."""
+    longitude, tilt = mean_longitude(scene, t), np.radians(23.439)
+    if scene.epoch is not None:
+        n = days_since_j2000(scene, t)
+        g = np.radians(357.528 + 0.9856003 * n)
+        longitude += np.radians(1.915 * np.sin(g) + 0.020 * np.sin(2 * g))
+        tilt -= np.radians(4e-7 * n)
+    return np.array([np.cos(longitude), np.cos(tilt) * np.sin(longitude), np.sin(tilt) * np.sin(longitude)])
+
+
+def sunlit(scene, t, r):
+    """Whether at least half of the Sun is seen. In the cone, the Sun's centre at the limb stands for that: 5 ms."""
+    to_sun, radius = sun(scene, t), body(scene)[1]
+    if scene.environment.shadow == "cylinder":
+        return r @ to_sun > 0 or np.linalg.norm(r - (r @ to_sun) * to_sun) > radius
+    to_sun = AU * to_sun - r
+    apart = np.arccos(-(to_sun @ r) / np.linalg.norm(to_sun) / np.linalg.norm(r))
+    return apart > np.arcsin(radius / np.linalg.norm(r))
+
+
+def altitude(scene, r):
+    """Above the sphere, or above the ellipsoid by Bowring's iteration."""
+    if scene.environment.height_above == "sphere":
+        return np.linalg.norm(r) - body(scene)[1]
+    flattening = 1 / 298.257223563
+    squash = flattening * (2 - flattening)
+    out = np.hypot(r[0], r[1])
+    tangent = r[2] / (out * (1 - squash))
+    for _ in range(4):
+        latitude = np.arctan(tangent)
+        curvature = RADIUS_EARTH / np.sqrt(1 - squash * np.sin(latitude) ** 2)
+        tangent = (r[2] + squash * curvature * np.sin(latitude)) / out
+    return out * np.cos(latitude) + r[2] * np.sin(latitude) - RADIUS_EARTH**2 / curvature
+
+
+def place(scene, t, r):
+    """(latitude deg, local time h, altitude km) as the tables count them."""
+    hour = np.degrees(np.arctan2(r[1], r[0]) - mean_longitude(scene, t)) / 15 + 12
+    return np.degrees(np.arcsin(r[2] / np.linalg.norm(r))), hour % 24, altitude(scene, r) / 1e3
+
+
+def solar_flux(scene, t):
+    if scene.environment.solar_flux != "cycle":
+        return scene.environment.solar_flux
+    year = 2000 + days_since_j2000(scene, t) / 365.25
+    return 70 + 61.5 * (1 - np.cos(2 * np.pi * (year - 2019.96) / 11))
+
+
+def gridded(latitude, hour, height, values):
+    """Straight lines between the nodes, round the clock, held at the top and the bottom."""
+    hour, values = [*hour, 24.0], np.concatenate([values, values[:, :1]], axis=1)
+    inside = RegularGridInterpolator((latitude, hour, height), values)
+    return lambda where: inside((where[0], where[1], min(max(where[2], height[0]), height[-1])))
+
+
+@cache
+def plasma_table():
+    """ln of the density (1/m3) at three solar levels, then the mean ion masses (kg)."""
+    with np.load(shipped_folder("assets") / "ionosphere_iri2020.npz") as file:
+        levels = ("min2019", "mid2014", "max2001")
+        values = [np.log(file[f"{name}_electron_density_m3"].astype(float)) for name in levels]
+        values += [1.66053906660e-27 * file[f"{name}_mean_ion_mass_u"].astype(float) for name in levels]
+        axes = file["latitude_deg"], file["local_time_h"], file["altitude_km"]
+    return gridded(*axes, np.stack(values, axis=-1))
+
+
+@cache
+def air_table(levels, ap):
+    """ln of the density (kg/m3) at solar levels, from NRLMSIS 2.1: what depends on longitude and UT off, an equinox and
+    a solstice averaged, eight local times made 24 by their Fourier sum."""
+    from pymsis import calculate
+
+    off = {"all_ut_effects": 0, "longitudinal": 0, "mixed_ut_long": 0, "mixed_ap_ut_long": 0}
+    latitude, height = np.linspace(-90, 90, 19), np.arange(100.0, 1500.1, 10)
+    values = []
+    for level in levels:
+        means = 0.0
+        for day in ("2019-03-21T12:00", "2019-06-21T12:00"):  # longitude -180 deg has midnight at noon UT
+            drivers = {"f107s": [level], "f107as": [level], "aps": [[ap] * 7], "version": 2.1} | off
+            means = means + calculate([day], np.arange(-180.0, 180, 45), latitude, height, **drivers)[0, ..., 0] / 2
+        log, angle = np.log(means.astype(float)), np.radians(np.arange(0, 360, 45))
+        fine, total = np.radians(np.arange(0, 360, 15)), log.mean(axis=0)[None]
+        for k in range(1, 5):
+            weight = 1 / 8 if k == 4 else 1 / 4
+            total = total + np.tensordot(np.cos(k * (fine[:, None] - angle)), weight * log, 1)
+        values.append(np.swapaxes(total, 0, 1))
+    return gridded(latitude, np.arange(0.0, 24), height, np.stack(values, axis=-1))
+
+
+def air_drag(scene):
+    """(t, r, v, mass) -> acceleration; None without air."""
+    air, craft = scene.environment.atmosphere, scene.device
+    if air is None:
+        return None
+    if air.kind == "nrlmsis-2.1":
+        flux = scene.environment.solar_flux
+        levels = (70.0, 100.0, 145.0, 200.0) if flux == "cycle" else (flux,)
+        table = air_table(levels, air.ap)
+
+    def drag(t, r, v, mass):
+        if air.kind == "exponential":
+            density = air.density * np.exp(
+                (air.reference_altitude - np.linalg.norm(r) + body(scene)[1]) / air.scale_height
+            )
+        else:
+            density = np.exp(np.interp(solar_flux(scene, t), levels, table(place(scene, t, r))))
+        u = v - np.cross(spin_of_earth(scene), r)
+        return -0.5 * density * craft.drag_coefficient * craft.drag_area / mass * np.linalg.norm(u) * u
+
+    return drag
+
+
+def oblate(environment, r):
+    """Pull of the zonal harmonics: gradient of -(mu / r) J_n (R / r)^n P_n(z / r)."""
+    size = np.linalg.norm(r)
+    s, up, a = r[2] / size, r / size, np.zeros(3)
+    for n, j in ((2, J2 * environment.j2), (3, J3 * environment.j3), (4, J4 * environment.j4)):
+        p = Legendre.basis(n)
+        k = MU_EARTH * j * (RADIUS_EARTH / size) ** n / size**2
+        a = a + k * ((n + 1) * p(s) * up - p.deriv()(s) * (np.array([0, 0, 1.0]) - s * up))
+    return a
 
 
 def thruster(scene):

@@ -8,7 +8,7 @@ import pytest
 from sailviz import steering as law
 from sailviz.constants import DAY, J2_EARTH, MU_EARTH, RADIUS_EARTH
 from sailviz.elements import state as state_on_orbit
-from sailviz.propagate import choice, dop853, dynamics, gauss_jackson
+from sailviz.propagate import choice, dop853, dynamics, gauss_jackson, row
 from sailviz.propagate.events import APSIS, END_OF_USE, NODE, RADIUS, RECORD, STOP, watch
 from sailviz.propagate.plugs import user_address
 
@@ -292,6 +292,8 @@ def test_many_turns_of_a_low_orbit_are_left_to_the_multistep_method():
     assert chosen(low, orbit(700e3), 365, wanted="dop853").integrator == "dop853"
     assert chosen(low, orbit(700e3), 365, breaks=np.arange(0, 365 * DAY, 600.0)).integrator == "dop853"
     assert chosen(low, orbit(700e3), 1).reason == "15 revolutions are few"
+    tabled = earth(surface_radius=RADIUS_EARTH, air=(row.TABLED_AIR, 1.0), air_table=np.zeros(20))
+    assert "tables" in chosen(tabled, orbit(700e3), 365).reason
     assert chosen(low, orbit(36_000e3), 3650).reason == "the orbit is not a low one"
 
 

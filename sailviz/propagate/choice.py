@@ -9,6 +9,8 @@ import numpy as np
 from sailviz.propagate.dynamics import DEVICE, MU, SURFACE_RADIUS, THRUSTER
 from sailviz.propagate.gauss_jackson import ANGLE, LARGEST_ECCENTRICITY
 from sailviz.propagate.gauss_jackson_coefficients import LAGS
+from sailviz.propagate.low_orbit import TABLE_PROFILE
+from sailviz.propagate.row import AIR, ECLIPSE_POWER, PLASMA, PLASMA_ON, POWER, TABLED_AIR
 
 DOP853, GAUSS_JACKSON = "dop853", "gauss-jackson"
 FEWEST_TURNS = 50  # below, DOP853 is as accurate and the gain is microseconds
@@ -63,4 +65,12 @@ def choose(model, position, velocity, duration, breaks=(0.0,), wanted="auto") ->
         return Choice(DOP853, f"{duration / turn:.0f} revolutions are few")
     if duration / (kinks + 1) < STEPS_A_START_COSTS * ANGLE / (2 * np.pi) * turn:
         return Choice(DOP853, f"the thrust is switched {kinks * turn / duration:.1f} times a revolution")
+    if _kinked(p):  # where the multistep method halves its step and halves it again, and takes ten times as long
+        return Choice(DOP853, "a force read from tables or switched by the shadow has kinks")
     return Choice(GAUSS_JACKSON, f"{duration / turn:.0f} revolutions of a low orbit of eccentricity {e:.2g}")
+
+
+def _kinked(p) -> bool:
+    """Whether the forces of a parameter row have kinks along the way, at places that no schedule knows."""
+    brake = p[PLASMA_ON] != 0.0
+    return p[AIR] == TABLED_AIR or (brake and (p[PLASMA] == TABLE_PROFILE or p[POWER] != p[ECLIPSE_POWER]))

@@ -8,15 +8,28 @@ from pathlib import Path
 
 import pytest
 
+import sailviz
 from sailviz.shipped import shipped_scenes
 
 DATA = Path(__file__).parents[1] / "data"
 TIGHT = {"propagation.tolerance": 1e-13}
+# Of a low orbit the first hours, in equal steps: over months the rounding of one machine, magnified at the kinks of
+# tables and the edges of the shadow, decides where on its orbit a craft is. What comes of it all, the scene expects.
+LOW_ORBIT = {
+    "propagation": {
+        "duration_h": 6,
+        "outputs": 40,
+        "tolerance": 1e-13,
+        "largest_step_s": 10,
+        "integrator": "dop853",
+    }
+}
 
 
 @pytest.mark.parametrize("name", shipped_scenes())
 def test_a_shipped_scene_flies_as_it_did(name, recording_regression):
-    recording_regression(name, name=name.replace("/", "-"), folder=DATA, rows=40, set=TIGHT)
+    values = LOW_ORBIT if sailviz.load_scene(name).body == "earth" else TIGHT
+    recording_regression(name, name=name.replace("/", "-"), folder=DATA, rows=40, set=values)
 
 
 def test_the_goldens_belong_to_scenes_and_stay_small():

@@ -378,13 +378,13 @@ def _throttled(steering):
 
 
 def _lyapunov_row(steering):
-    """Targets, weights and scales of the law, as `primers.lyapunov_primer` reads them."""
+    """Targets, weights, scales and nearness of the law, as `primers.lyapunov_primer` reads them."""
     a, e = steering.semi_major_axis, steering.eccentricity
     longitude, tangent = steering.raan + steering.argument, np.tan(steering.inclination / 2)
     p = a * (1 - e * e)
     target = (p, e * np.cos(longitude), e * np.sin(longitude))
     target += (tangent * np.cos(steering.raan), tangent * np.sin(steering.raan))
-    return np.array([*target, *steering.weights, p, 1.0, 1.0, 1.0, 1.0])
+    return np.array([*target, *steering.weights, p, 1.0, 1.0, 1.0, 1.0, steering.within**2])
 
 
 def _primer_law(scene, law_id, device, device_parameters):

@@ -20,7 +20,7 @@ GOALS = {
     "raan": RAAN,
     "argument": ARGUMENT,
 }
-LYAPUNOV_NUMBERS = 15  # of `lyapunov_primer`: five targets, five weights, five scales
+LYAPUNOV_NUMBERS = 16  # of `lyapunov_primer`: five targets, five weights, five scales, V that is near enough
 SMALL = 1e-12  # an eccentricity, or sine of an inclination, below which there is no apsis or node
 
 
@@ -85,7 +85,8 @@ def lyapunov_primer(x, y, z, vx, vy, vz, mu, p, at):
     """-dV/d(velocity) of V = sum W_i ((x_i - T_i) / S_i)^2 over the modified equinoctial elements p, f, g, h, k,
     inertial: the primer that brings the orbit towards the target elements.
 
-    p[at:] : targets T (5), weights W (5), scales S (5). Prograde orbits: h and k grow without bound at 180 deg.
+    p[at:] : targets T (5), weights W (5), scales S (5), and the V at which the target counts as reached: the primer
+    then vanishes, for no thrust holds an orbit on a point. Prograde orbits: h and k grow without bound at 180 deg.
     """
     r = np.sqrt(x * x + y * y + z * z)
     ux, uy, uz = x / r, y / r, z / r
@@ -109,6 +110,10 @@ def lyapunov_primer(x, y, z, vx, vy, vz, mu, p, at):
     dg = p[at + 7] * (g - p[at + 2]) / (p[at + 12] * p[at + 12])
     dh = p[at + 8] * (h - p[at + 3]) / (p[at + 13] * p[at + 13])
     dk = p[at + 9] * (k - p[at + 4]) / (p[at + 14] * p[at + 14])
+    value = dp * (semi - p[at]) + df * (f - p[at + 1]) + dg * (g - p[at + 2])
+    value += dh * (h - p[at + 3]) + dk * (k - p[at + 4])
+    if value <= p[at + 15]:
+        return 0.0, 0.0, 0.0
     tilt = (h * sin - k * cos) / w
     l_r = q * (df * sin - dg * cos)
     l_t = q * (2.0 * semi / w * dp + ((w + 1.0) * cos + f) / w * df + ((w + 1.0) * sin + g) / w * dg)

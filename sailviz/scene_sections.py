@@ -477,7 +477,8 @@ class LocalSteering(PrimerSteering):
 
 
 class LyapunovSteering(PrimerSteering):
-    """Down the distance to a target orbit, a weighted sum of squares of the equinoctial elements' misses."""
+    """Down the distance to a target orbit, a weighted sum of squares of the equinoctial elements' misses, until its
+    root is `within`; then without thrust."""
 
     kind: Literal["lyapunov"]
     semi_major_axis: Annotated[Length, POSITIVE]
@@ -486,6 +487,7 @@ class LyapunovSteering(PrimerSteering):
     raan: Angle = 0.0
     argument: Angle = 0.0
     weights: Annotated[list[Annotated[float, Field(ge=0)]], Field(min_length=5, max_length=5)] = [1, 1, 1, 1, 1]
+    within: Annotated[float, POSITIVE] = 1e-3
 
 
 Steering = Annotated[

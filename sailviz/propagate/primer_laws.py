@@ -59,6 +59,9 @@ def observe_primer(time, states, p):
         s = states[:, i]
         lx, ly, lz = primer(time[i], s[0], s[1], s[2], s[3], s[4], s[5], p)
         size = np.sqrt(lx * lx + ly * ly + lz * lz)
+        if size == 0.0:
+            out[i, :], support[i] = 0.0, 0.0
+            continue
         out[i, 0], out[i, 1], out[i, 2] = lx / size, ly / size, lz / size
         r = np.sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
         c = min(max((out[i, 0] * s[0] + out[i, 1] * s[1] + out[i, 2] * s[2]) / r, -1.0), 1.0)

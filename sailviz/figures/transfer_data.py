@@ -1,0 +1,87 @@
+"""Flight times that take minutes to find, shipped as tables for the figures that draw them.
+
+    python -m sailviz.figures.transfer_data FOLDER
+
+computes them anew, transfer_times.csv and launch_windows.csv, in about twenty minutes on one core.
+"""
+
+from __future__ import annotations
+
+import csv
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from sailviz.shipped import shipped_folder
+
+TARGETS = ("mercury", "venus", "mars", "ceres")
+OVER_ACCELERATION = ("ideal", "jpl-2015", "electric-sail")
+ACCELERATIONS = (2.0, 1.5, 1.0, 0.75, 0.5, 0.35, 0.25)  # mm/s2
+COMPARED = (
+    "ideal", "jpl-2015", "jpl-1978", "electric-sail", "electric-sail-updated", "electric-sail-polynomial",
+    "electric-sail-original",
+)  # fmt: skip
+WINDOWS = {"mars": ("2029-01-01", "2033-01-01", 49), "venus": ("2029-01-01", "2031-06-01", 49)}
+WINDOW_DEVICE, WINDOW_ACCELERATION = "ideal", 1.0  # mm/s2
+TIMES, WINDOW_FILE = "transfer_times.csv", "launch_windows.csv"
+
+
+def flight_times() -> dict[tuple[str, str], np.ndarray]:
+    """(target, device) -> rows (n, 3): acceleration mm/s2, flight time d (NaN where none was found), revolutions;
+    from the Earth, between circles."""
+    found: dict = {}
+    for row in _rows(TIMES):
+        numbers = [float(row[name]) for name in ("acceleration_mm_s2", "time_d", "revolutions")]
+        found.setdefault((row["target"], row["device"]), []).append(numbers)
+    return {key: np.array(sorted(rows)) for key, rows in found.items()}
+
+
+def launch_windows() -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Target -> departures (n,) datetime64 and flight times (n,) d, NaN where none was found."""
+    found: dict = {}
+    for row in _rows(WINDOW_FILE):
+        found.setdefault(row["target"], []).append((np.datetime64(row["departure"], "s"), float(row["time_d"])))
+    return {
+        key: (np.array([d for d, _ in rows]), np.array([t for _, t in rows], dtype=float)) for key, rows in found.items()
+    }
+
+
+def _rows(name):
+    with open(shipped_folder("assets") / name, newline="", encoding="utf-8") as file:
+        yield from csv.DictReader(file)
+
+
+def compute_times(path: Path) -> None:
+    """Search every flight anew; rows are written as they are found."""
+    from sailviz import transfers
+
+    wanted = {(t, d, a) for t in TARGETS for d in OVER_ACCELERATION for a in ACCELERATIONS}
+    wanted |= {(t, d, 1.0) for t in TARGETS[:3] for d in COMPARED}
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        file.write("target,device,acceleration_mm_s2,time_d,revolutions\n")
+        for target, device, a in sorted(wanted, key=lambda x: (-x[2], TARGETS.index(x[0]), x[1])):
+            flight = transfers.find("earth", target, device, a * 1e-3).flight
+            file.write(f"{target},{device},{a:g},{flight.time / 86400:.4f},{flight.revolutions:.4f}\n")
+            file.flush()
+
+
+def compute_windows(path: Path) -> None:
+    """Search every departure anew."""
+    from sailviz import transfers
+
+    with open(path, "w", newline="", encoding="utf-8") as file:
+        file.write("target,departure,time_d\n")
+        for target, (first, last, dates) in WINDOWS.items():
+            options = {"departure": (first, last), "dates": dates}
+            flight = transfers.find("earth", target, WINDOW_DEVICE, WINDOW_ACCELERATION * 1e-3, **options).flight
+            departures = np.append(flight.window.departures, flight.departure).astype("datetime64[s]")
+            times = np.append(flight.window.times, flight.time) / 86400
+            for i in np.argsort(departures):
+                file.write(f"{target},{departures[i]},{times[i]:.4f}\n")
+
+
+if __name__ == "__main__":
+    folder = Path(sys.argv[1])
+    compute_times(folder / TIMES)
+    compute_windows(folder / WINDOW_FILE)

@@ -487,7 +487,7 @@ class LyapunovSteering(PrimerSteering):
     raan: Angle = 0.0
     argument: Angle = 0.0
     weights: Annotated[list[Annotated[float, Field(ge=0)]], Field(min_length=5, max_length=5)] = [1, 1, 1, 1, 1]
-    within: Annotated[float, POSITIVE] = 1e-3
+    within: Annotated[float, POSITIVE] = 0.02
 
 
 Steering = Annotated[

@@ -60,7 +60,7 @@ def compute_times(path: Path) -> None:
     wanted |= {(t, d, 1.0) for t in TARGETS[:3] for d in COMPARED}
     with open(path, "w", newline="", encoding="utf-8") as file:
         file.write("target,device,acceleration_mm_s2,time_d,revolutions\n")
-        for target, device, a in sorted(wanted, key=lambda x: (-x[2], TARGETS.index(x[0]), x[1])):
+        for target, device, a in sorted(wanted, key=lambda x: (TARGETS.index(x[0]), x[1], -x[2])):
             flight = transfers.find("earth", target, device, a * 1e-3).flight
             file.write(f"{target},{device},{a:g},{flight.time / 86400:.4f},{flight.revolutions:.4f}\n")
             file.flush()

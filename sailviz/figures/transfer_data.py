@@ -43,7 +43,8 @@ def launch_windows() -> dict[str, tuple[np.ndarray, np.ndarray]]:
     for row in _rows(WINDOW_FILE):
         found.setdefault(row["target"], []).append((np.datetime64(row["departure"], "s"), float(row["time_d"])))
     return {
-        key: (np.array([d for d, _ in rows]), np.array([t for _, t in rows], dtype=float)) for key, rows in found.items()
+        key: (np.array([d for d, _ in rows]), np.array([t for _, t in rows], dtype=float))
+        for key, rows in found.items()
     }
 
 

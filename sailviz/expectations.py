@@ -8,7 +8,7 @@ import numpy as np
 
 from sailviz.closed_forms import FORMS, error
 from sailviz.elements import elements
-from sailviz.quantities import spellings
+from sailviz.quantities import of_cloud, spellings
 from sailviz.run import Attitude, Run, Thrust
 from sailviz.scene import Expectation, Scene
 
@@ -89,7 +89,13 @@ class Judge:
             self._start = float(run.time[0])
             names = {item.closed_form for item in self._expected if item.closed_form}
             self._motions = {name: FORMS[name](run) for name in names}
+            clouds = {cloud.name: cloud for cloud in run.setting.clouds}
+            for i, (item, quantity) in enumerate(zip(self._expected, self._quantities, strict=True)):
+                if item.ensemble in clouds:
+                    self._found[i] = of_cloud(clouds[item.ensemble], quantity, item.statistic)
         for i, (item, quantity) in enumerate(zip(self._expected, self._quantities, strict=True)):
+            if item.ensemble is not None:
+                continue
             if item.at in ("mean", "drift"):
                 self._gather(i, item, self._column(item, quantity, run), run, begins)
                 continue
@@ -114,7 +120,7 @@ class Judge:
         """What came of each expectation, in the order of the scene."""
         return [
             Verdict(
-                item.quantity if item.closed_form is None else f"error against {item.closed_form}",
+                _name(item),
                 item.at if item.at is not None else f"t = {item.at_time:.10g} s",
                 item.value,
                 item.within if item.within is not None else abs(item.value) * item.within_percent / 100,
@@ -166,6 +172,13 @@ class Judge:
         if quantity.stem == "longitude":
             return self._unwrapped(run) / quantity.factor
         return quantity.of(run)
+
+
+def _name(item: Expectation) -> str:
+    """What is expected, in words."""
+    if item.closed_form is not None:
+        return f"error against {item.closed_form}"
+    return item.quantity if item.ensemble is None else f"{item.quantity}, {item.statistic} of {item.ensemble}"
 
 
 def _row_at(run: Run, event) -> Run:

@@ -61,6 +61,7 @@ class Plan:
     velocity: np.ndarray  # (3,) m/s
     mass: float  # kg
     model: dynamics.Model
+    table: np.ndarray | None  # of the steering, `sailviz.steering.table`
     schedule: Schedule  # of the thrust factor
     watch: happening.Watch
     names: tuple[str, ...]  # of the watched events
@@ -118,6 +119,7 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
         velocity,
         scene.device.mass or 1.0,
         model,
+        table,
         when,
         watch,
         names,
@@ -159,11 +161,12 @@ def _written(function, seen=()) -> str:
     return f"{code.co_code.hex()} {code.co_consts} {code.co_names} {names}"
 
 
-def _film(scene) -> Film:
-    film = scene.device.film
-    if isinstance(film, str):
-        return FILMS[film]
-    values = film.model_dump()
+def film_of(scene) -> Film:
+    """Force coefficients of the scene's solar sail."""
+    given = scene.device.film
+    if isinstance(given, str):
+        return FILMS[given]
+    values = given.model_dump()
     return Film(**values) if "b1" in values else Film.from_optics(**values)
 
 
@@ -171,7 +174,7 @@ def _design(scene):
     """The closed form behind a start "on the designed orbit"; SceneError where it does not exist."""
     start = scene.start
     if start.kind in HELD_STARTS:
-        device = "electric-sail" if scene.device.kind == "electric-sail" else _film(scene)
+        device = "electric-sail" if scene.device.kind == "electric-sail" else film_of(scene)
         third = scene.environment.third_body
         if start.kind == "displaced":
             found = displaced.circular(start.radius, start.elevation, start.rate_ratio, device)
@@ -184,9 +187,9 @@ def _design(scene):
             return _track(scene, device)
     elif start.kind == "spiral":
         found = spirals.logarithmic(
-            _film(scene).lightness(sail_strength(scene, None)),
+            film_of(scene).lightness(sail_strength(scene, None)),
             scene.steering.pitch * np.sign(np.sin(scene.steering.clock)),
-            _film(scene),
+            film_of(scene),
         )
     else:
         return None
@@ -287,7 +290,7 @@ def _node(scene) -> float:
 def _sail_name(scene):
     """The scene's sail as design functions take it: a Film, or the name of an E-sail model."""
     if scene.device.kind == "solar-sail":
-        return _film(scene)
+        return film_of(scene)
     return "electric-sail" if scene.device.model == "final" else f"electric-sail-{scene.device.model}"
 
 
@@ -309,7 +312,7 @@ def sail_strength(scene, design) -> float:
                 device.wind_potential,
             )
         )
-    return _film(scene).characteristic_acceleration(
+    return film_of(scene).characteristic_acceleration(
         lightness=device.lightness_number, area=device.area, mass=device.mass
     )
 
@@ -318,7 +321,7 @@ def _device(scene, design):
     """(id, parameters) for the right-hand side."""
     device = scene.device
     if device.kind == "solar-sail":
-        film = _film(scene)
+        film = film_of(scene)
         strength = sail_strength(scene, design) * AU**2 / film.total
         return dynamics.SOLAR_SAIL, (strength, film.b1, film.b2, film.b3)
     if device.kind == "electric-sail":
@@ -359,6 +362,8 @@ def _steering(scene, design, position, velocity):
         table, switches = primer_table(scene, position, velocity, sail_of_law, sail_strength(scene, design))
         # the times of another sail's switches are not quite those of this flight
         return law.PRIMER, (), table, law.CUBIC, switches if steering.reckons_with is None else ()
+    if steering.kind == "smoothed-transfer":
+        return law.TABLE_ORBITAL, (), _smoothed_table(scene), law.HOLD, ()
     if steering.kind == "locally-optimal":
         return law.LOCAL, (primers.GOALS[steering.goal], 1.0 if steering.sense == "increase" else -1.0), *plain
     if steering.kind == "lyapunov":
@@ -375,6 +380,31 @@ def _throttled(steering):
     on = np.array(steering.throttle or [1.0]) > 0
     rows = np.nonzero(on[1:] != on[:-1])[0] + 1
     return tuple((steering.time[i], "thrust on" if on[i] else "thrust off") for i in rows if steering.time[i] > 0)
+
+
+def _smoothed_table(scene):
+    """The steering table of a smoothed transfer from the start's circle; off once it has arrived."""
+    from sailviz.design.smoothed_transfer import smoothed_transfer
+
+    steering, r0, strength = scene.steering, scene.start.radius, sail_strength(scene, None)
+    clock = np.sqrt(r0**3 / MU_SUN)
+    found = smoothed_transfer(
+        steering.radius / r0,
+        strength * (AU / r0) * r0**2 / MU_SUN,
+        np.array(steering.costates),
+        scene.propagation.duration / clock,
+        steering.hold / clock,
+        steering.width,
+    )
+    if not found.residual < 1e-6:
+        words = (
+            f"the shooting did not converge (it misses the circle by {found.residual:.1g}): begin from other costates"
+        )
+        raise SceneError([Fault("steering.costates", f"{words}, or with another duration.")], scene.source)
+    steps = len(found.pitch)
+    time = found.time * clock / steps * np.arange(steps + 1)
+    pitch, throttle = np.append(found.pitch, 0.0), np.append(found.throttle, 0.0)
+    return law.table(time, pitch, np.full(steps + 1, np.pi / 2), throttle, "hold")
 
 
 def _lyapunov_row(steering):
@@ -481,7 +511,7 @@ def _approximations(scene, body, position, velocity, design) -> dict[str, FirstO
     else:
         from sailviz.design import asymptotic
 
-        shape = "electric-sail" if device.kind == "electric-sail" else _film(scene)
+        shape = "electric-sail" if device.kind == "electric-sail" else film_of(scene)
         thrust = asymptotic.thrust(shape, sail_strength(scene, design), pitch, r0, mu)
     return {
         item.name: FirstOrder(

@@ -10,7 +10,7 @@ from functools import cache
 
 import numpy as np
 
-from sailviz.run import Run
+from sailviz.run import Cloud, Run
 from sailviz.units import UNITS, spelled
 
 
@@ -55,6 +55,10 @@ def _mean_altitude(run: Run):
     return run.environment.get("mean_altitude_m", run.elements.semi_major_axis - run.setting.body.radius)
 
 
+def _radial_speed(run: Run):
+    return np.sum(run.position * run.velocity, axis=1) / _distance(run)
+
+
 # name -> (dimension, values of a run)
 QUANTITIES = {
     "time": ("time", lambda run: run.time),
@@ -67,6 +71,8 @@ QUANTITIES = {
     "height": ("length", lambda run: run.position[:, 2]),
     "longitude": ("angle", _longitude),
     "speed": ("speed", lambda run: np.linalg.norm(run.velocity, axis=1)),
+    "radial_speed": ("speed", _radial_speed),
+    "transverse_speed": ("speed", lambda run: _momentum(run) / _distance(run)),
     "flight_path_angle": ("angle", _flight_path),
     "energy": ("specific_energy", _energy),
     "angular_momentum": ("specific_angular_momentum", _momentum),
@@ -98,6 +104,10 @@ QUANTITIES = {
     "tether_tilt": ("angle", _acted("tether_tilt_rad")),
     "air_drag": ("force", _acted("air_drag_N")),
     "thrust_factor": ("none", lambda run: run.environment.get("thrust_factor", np.ones(len(run)))),
+    "thrust_voltage": ("voltage", _acted("thrust_voltage_V")),
+    "wind_pressure": ("pressure", _acted("solar_wind_pressure_Pa")),
+    "electrochromic_state": ("none", _acted("electrochromic_state")),
+    "saturated": ("none", _acted("saturated")),  # of an ensemble: the share of time at the largest voltage
 }
 
 
@@ -123,3 +133,23 @@ def spellings() -> dict[str, Quantity]:
         for stem, (dimension, _) in QUANTITIES.items()
         for name, (unit, factor) in zip(spelled(stem, dimension), UNITS[dimension].items(), strict=True)
     }
+
+
+PLACES = {"radius": 0, "longitude": 1, "radial_speed": 3, "transverse_speed": 4}  # of a planar flight's states
+MEANS = {"thrust_factor": "mean_factor", "thrust_voltage": "mean_voltage", "saturated": "mean_saturated"}
+
+
+def of_cloud(cloud: Cloud, quantity: Quantity, statistic: str) -> float:
+    """A statistic of the ends of an ensemble's flights, in the quantity's unit: "mean", "miss" (mean less nominal) or
+    "deviation"; of thrust factor, voltage and saturation the mean over flights and time. NaN where there is none."""
+    if quantity.stem in MEANS and statistic == "mean":
+        return getattr(cloud, MEANS[quantity.stem]) / quantity.factor
+    if quantity.stem not in PLACES or not cloud.planar:
+        return float("nan")
+    k = PLACES[quantity.stem]
+    value = {
+        "mean": cloud.end_mean[k],
+        "miss": cloud.end_mean[k] - cloud.nominal[-1, k],
+        "deviation": cloud.end_deviation[k],
+    }[statistic]
+    return float(value / quantity.factor)

@@ -59,6 +59,53 @@ class Shell:
 
 
 @dataclass(frozen=True)
+class Cloud:
+    """Many flights of the craft of a run, each through a wind (or sunshine) of its own. n times, SI, radians.
+
+    States are cylindrical about `axes[2]`: distance from the axis m, azimuth rad counted from the start without jumps,
+    height m, and the speeds radial, transverse and along the axis, m/s. `planar` flights have height 0: their distance
+    from the axis is that from the Sun.
+    """
+
+    name: str
+    words: str  # what the craft does about it, e.g. "pressure law, at most 40 kV"
+    wind: str  # what blows, in words
+    method: str  # "monte-carlo" | "polynomial-chaos"
+    control: str  # "none" | "pressure" | "distance" | "electrochromic"
+    flights: int
+    seed: int
+    planar: bool
+    step: np.ndarray  # (n,) rows of the run that stand at the same times
+    time: np.ndarray  # (n,) s
+    axes: np.ndarray  # (3, 3) rows: inertial directions of azimuth 0, azimuth 90 deg and the axis
+    nominal: np.ndarray  # (n, 6) the flight with thrust factor 1
+    kept: np.ndarray  # (k, n, 6) flights drawn whole
+    mean: np.ndarray  # (n, 6)
+    covariance: np.ndarray  # (n, 6, 6)
+    levels: np.ndarray  # (m,) per cent
+    percentiles: dict[str, np.ndarray]  # name with unit -> (m, n), e.g. "radius_m", "thrust_factor"
+    one: dict[str, np.ndarray]  # name with unit -> (n,) of the first flight: what drove it
+    saturated: np.ndarray  # (n,) share of the flights at the largest voltage
+    end: np.ndarray  # (flights, 6) states
+    end_mean: np.ndarray  # (6,)
+    end_deviation: np.ndarray  # (6,)
+    mean_factor: float  # thrust over nominal thrust, over time and flights
+    mean_voltage: float  # V, over time and flights; NaN for a solar sail
+    mean_saturated: float  # share of time at the largest voltage
+    limits: dict[str, float]  # "nominal_voltage_V", "maximum_voltage_V", "reference_pressure_Pa", ...
+    miss: np.ndarray  # (k', n) m, distance of recorded flights from the nominal one
+    error: float  # of integration, largest in position over distance among the first flights
+    tail: float = 0.0  # of an expansion: share of the last order in the deviation of distance and azimuth at the end
+    histogram_edges: np.ndarray = field(default_factory=lambda: np.zeros(2))  # (b + 1,) m, distance from the nominal
+    histogram: np.ndarray = field(default_factory=lambda: np.zeros((1, 1)))  # (n, b) shares
+
+    def places(self, states) -> np.ndarray:
+        """Inertial positions (..., 3) m of cylindrical states (..., 3 or 6)."""
+        rho, angle, height = np.moveaxis(np.asarray(states)[..., :3], -1, 0)
+        return np.stack([rho * np.cos(angle), rho * np.sin(angle), height], axis=-1) @ self.axes
+
+
+@dataclass(frozen=True)
 class Setting:
     """Everything about a run that is not a column of numbers."""
 
@@ -81,6 +128,7 @@ class Setting:
     identity: str  # hash of the resolved scene, hexadecimal
     play_duration: float = 40.0  # s of wall time that a replay takes
     shells: tuple[Shell, ...] = ()
+    clouds: tuple[Cloud, ...] = ()
 
 
 @dataclass(frozen=True)

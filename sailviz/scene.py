@@ -22,8 +22,10 @@ from sailviz.scene_conflicts import conflicts
 from sailviz.scene_faults import convert, faults_of, locate, nearest
 from sailviz.scene_sections import (
     Approximation,
+    Chaos,
     CustomBody,
     Devices,
+    Ensemble,
     Environment,
     Expectation,
     Propagation,
@@ -56,6 +58,8 @@ class Scene(Section):
     propagation: Propagation
     event: list[Watched] = []
     approximation: list[Approximation] = []
+    ensemble: list[Ensemble] = []
+    chaos: list[Chaos] = []
     recording: Recording = Recording()
     expect: list[Expectation] = []
 

@@ -64,7 +64,13 @@ def conflicts(scene: Scene) -> list[tuple[str, str]]:
             found.append(("ephemeris", "DE421 reaches from 1899 to 2053"))
         if find_spec("skyfield_data") is None or find_spec("jplephem") is None:
             found.append(("ephemeris", 'DE421 needs the extra "ephemeris": pip install "sailviz[ephemeris]"'))
+    if law == "smoothed-transfer":
+        if start.kind != "circular" or start.radius is None:
+            found.append(("steering.kind", "a smoothed transfer begins on a circle: start.kind circular with radius"))
+        if device.kind != "electric-sail" or device.model != "final":
+            found.append(("steering.kind", 'a smoothed transfer is flown by an electric sail, model "final"'))
     found += _approximated(scene)
+    found += _swarming(scene)
     if start.kind == "circular" and start.altitude is not None and _body_radius(scene) == 0:
         found.append(("start.altitude", "the body has no radius to measure an altitude from"))
     if scene.environment.solar_wind.kind != "steady" and device.kind != "electric-sail":
@@ -107,6 +113,112 @@ def conflicts(scene: Scene) -> list[tuple[str, str]]:
             found.append((f"expect[{i}].at", f'no such moment "{expected.at}". {nearest(expected.at, words)}'))
         if expected.at_time is not None and not 0 <= expected.at_time <= duration:
             found.append((f"expect[{i}].at_time", "outside the run"))
+    return found
+
+
+MOST_UPDATES = 1e9  # changes of wind or voltage in all flights of an ensemble together: minutes of computing
+
+
+def _swarming(scene: Scene) -> list[tuple[str, str]]:
+    """What is wrong with the ensembles of a scene."""
+    found, names = [], set()
+    swarms = [(f"ensemble[{i}]", item) for i, item in enumerate(scene.ensemble)]
+    swarms += [(f"chaos[{i}]", item) for i, item in enumerate(scene.chaos)]
+    for place, item in swarms:
+        word = "".join(letter if letter.isalnum() else "_" for letter in item.name.lower())
+        if word in names:
+            found.append((f"{place}.name", f'another ensemble is called "{item.name}" already'))
+        names.add(word)
+    if swarms:
+        found += [(swarms[0][0], sentence) for sentence in _not_for_swarms(scene)]
+    for place, item in swarms:
+        found += [(f"{place}{where}", sentence) for where, sentence in _unlike_the_device(scene, item)]
+    for i, item in enumerate(scene.ensemble):
+        found += [(f"ensemble[{i}]{where}", sentence) for where, sentence in _undrawable(scene, item)]
+    for i, item in enumerate(scene.chaos):
+        wind = item.solar_wind or scene.environment.solar_wind
+        if wind.kind != "gamma" or wind.variation != "constant":
+            words = "polynomial chaos knows one gamma-distributed pressure for a whole flight"
+            place = f"chaos[{i}].solar_wind" if item.solar_wind else "environment.solar_wind"
+            found.append((place, f'{words}: kind = "gamma", variation = "constant"'))
+    from sailviz.quantities import MEANS, PLACES, spellings
+
+    known = {item.name for _, item in swarms}
+    for i, expected in enumerate(scene.expect):
+        if expected.ensemble is None:
+            continue
+        if expected.ensemble not in known:
+            words = f'no such ensemble "{expected.ensemble}". {nearest(expected.ensemble, known)}'
+            found.append((f"expect[{i}].ensemble", words))
+        elif expected.at != "end":
+            found.append((f"expect[{i}].at", 'statistics of an ensemble are those of its ends: at = "end"'))
+        stem = spellings()[expected.quantity].stem
+        if stem not in PLACES and (stem not in MEANS or expected.statistic != "mean"):
+            words = f"of an ensemble are known: {', '.join(PLACES)}; and the mean of {', '.join(MEANS)}"
+            found.append((f"expect[{i}].quantity", words))
+    return found
+
+
+def _not_for_swarms(scene: Scene) -> list[str]:
+    """What of a scene an ensemble cannot fly."""
+    device, steering, start, found = scene.device, scene.steering, scene.start, []
+    if device.kind not in ("solar-sail", "electric-sail") or scene.body != "sun":
+        return ["an ensemble flies a solar sail or an electric sail round the Sun"]
+    law = steering.kind if steering else "sun-facing"
+    if law == "table" and steering.interpolation != "hold":
+        found.append('an ensemble holds each row of a steering table: interpolation = "hold"')
+    elif law == "as designed" and start.kind in ("planet-following", "flat-ellipse"):
+        found.append(f"an ensemble cannot fly {start.kind}: its steering changes all the time")
+    elif law in PRIMER_LAWS or law == "inertial":
+        found.append(f'an ensemble cannot fly "{law}" steering, which depends on where each flight is')
+    if scene.environment.third_body is not None:
+        found.append("an ensemble knows no gravity but the Sun's")
+    if device.kind == "electric-sail" and device.model == "original":
+        found.append('an ensemble needs thrust that falls as 1/r: model "final", "updated" or "polynomial"')
+    if device.active is not None:
+        found.append("an ensemble's sail is on all the time: device.active is not for it")
+    if any(event.stop for event in scene.event):
+        found.append("an ensemble flies the whole duration: no event may stop the run")
+    return found
+
+
+def _unlike_the_device(scene: Scene, item) -> list[tuple[str, str]]:
+    """What an ensemble asks of a craft that has it not."""
+    found, control = [], item.control
+    electric = scene.device.kind == "electric-sail"
+    if not isinstance(control, str):
+        if electric == (control.kind == "electrochromic"):
+            has = "an electric sail controls its voltage" if electric else "a solar sail has electrochromic control"
+            found.append((".control", has))
+        elif electric and control.nominal_voltage <= scene.device.wind_potential:
+            found.append((".control.nominal_voltage", "must exceed device.wind_potential, or there is no thrust"))
+    if item.solar_wind is not None and not electric:
+        found.append((".solar_wind", "the solar wind acts on an electric sail only"))
+    return found
+
+
+def _undrawable(scene: Scene, item) -> list[tuple[str, str]]:
+    """What keeps an ensemble from drawing winds of its own."""
+    found, around, duration = [], scene.environment, scene.propagation.duration
+    if scene.device.kind == "solar-sail":
+        if around.irradiance.kind == "steady":
+            found.append((".name", "in steady sunlight all flights are the same: environment.irradiance"))
+        step = getattr(around.irradiance, "redraw", duration)
+    else:
+        wind = item.solar_wind or around.solar_wind
+        if wind.kind == "steady":
+            found.append((".name", "in a steady wind all flights are the same: environment.solar_wind, or its own"))
+        if getattr(wind, "potential", "fixed") != "fixed":
+            found.append((".solar_wind", 'an ensemble replays pressures alone: potential = "fixed"'))
+        if wind.kind == "replay" and item.seed is None and wind.seed is None:
+            found.append((".seed", "where in the series each flight begins is drawn: give a seed"))
+        step = 3600.0 if wind.kind == "replay" else getattr(wind, "redraw", duration)
+    control = scene.device.control if item.control == "device" else item.control
+    step = min(step, getattr(control, "interval", duration))
+    if item.flights * duration / step > MOST_UPDATES:
+        found.append(
+            (".flights", "more than a thousand million changes of wind or voltage: fewer flights, longer steps")
+        )
     return found
 
 

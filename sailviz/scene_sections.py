@@ -468,6 +468,28 @@ class OptimalSteering(PrimerSteering):
         return self
 
 
+class SmoothedSteering(Section):
+    """A fast transfer of an electric sail to another circle, its voltage falling smoothly towards the coasts; found by
+    shooting from costates of radius, radial and transverse speed (of any length) and from the run's duration. Pitch and
+    voltage are held over every `hold`."""
+
+    kind: Literal["smoothed-transfer"]
+    radius: Annotated[Length, POSITIVE]
+    costates: Annotated[list[float], Three]
+    hold: Annotated[Time, POSITIVE] = 3600.0
+    width: Annotated[float, Field(gt=0, le=1)] = 0.05
+
+    @model_validator(mode="after")
+    def _nonzero(self):
+        if not any(self.costates[1:]):
+            raise _wrong("the costates of velocity are all zero: they point the thrust")
+        return self
+
+    @property
+    def interpolation(self) -> str:
+        return "hold"
+
+
 class LocalSteering(PrimerSteering):
     """Whatever changes one orbital element fastest at every moment."""
 
@@ -497,6 +519,7 @@ Steering = Annotated[
     | TableSteering
     | SpinningSteering
     | OptimalSteering
+    | SmoothedSteering
     | LocalSteering
     | LyapunovSteering,
     Field(discriminator="kind"),
@@ -534,15 +557,15 @@ class Target(Section):
 # ---------------------------------------------------------------- what surrounds it
 class DrawnWind(Section):
     """Solar-wind dynamic pressure at 1 au drawn from a law: independent every `redraw`, correlated, or one value for
-    the whole flight. reference : the pressure of nominal thrust, the law's mean, or what leaves the mean thrust
-    nominal."""
+    the whole flight. reference : the pressure of nominal thrust, the law's mean, what leaves the mean thrust nominal,
+    or a pressure."""
 
     variation: Literal["redrawn", "correlated", "constant"] = "redrawn"
     redraw: Annotated[Time, POSITIVE] = 86_400.0
     correlation_time: Annotated[Time, POSITIVE] = 61_200.0
     yearly_deviation: Annotated[float, Field(ge=0, le=1)] = 0.0
     seed: Annotated[int, Field(ge=0)]
-    reference: Literal["mean", "unbiased"] = "mean"
+    reference: Annotated[Pressure, POSITIVE] | Literal["mean", "unbiased"] = "mean"
 
 
 class GammaWind(DrawnWind):
@@ -584,7 +607,7 @@ class ReplayedWind(Section):
     file: str
     start: datetime | date | None = None
     seed: Annotated[int, Field(ge=0)] | None = None
-    reference: Literal["mean", "unbiased"] = "mean"
+    reference: Annotated[Pressure, POSITIVE] | Literal["mean", "unbiased"] = "mean"
     potential: Literal["fixed", "from speed"] = "fixed"
     repair: bool = False
 
@@ -615,6 +638,9 @@ class CyclicIrradiance(Section):
     flicker: Annotated[float, Field(ge=0, lt=0.1)] = 2.454e-4
     redraw: Annotated[Time, POSITIVE] = 86_400.0
     seed: Annotated[int, Field(ge=0)] = 0
+
+
+Winds = Annotated[SteadyWind | GammaWind | LognormalWind | BurrWind | ReplayedWind, Field(discriminator="kind")]
 
 
 class ForceProfile(Section):
@@ -673,9 +699,7 @@ class ThirdBody(Section):
 class Environment(Section):
     """Everything around the craft but the point mass it orbits."""
 
-    solar_wind: Annotated[
-        SteadyWind | GammaWind | LognormalWind | BurrWind | ReplayedWind, Field(discriminator="kind")
-    ] = SteadyWind(kind="steady")
+    solar_wind: Winds = SteadyWind(kind="steady")
     irradiance: Annotated[SteadyIrradiance | CyclicIrradiance, Field(discriminator="kind")] = SteadyIrradiance(
         kind="steady"
     )
@@ -766,6 +790,34 @@ class QuasiCircularApproximation(Section):
 Approximation = Annotated[FirstOrderApproximation | QuasiCircularApproximation, Field(discriminator="kind")]
 
 
+class Swarm(Section):
+    """Many flights of the scene side by side. control : "device" as the device has it, "none", or one of its own;
+    solar_wind : another wind than the scene's."""
+
+    name: Annotated[str, Field(min_length=1)]
+    control: (
+        Literal["device", "none"]
+        | Annotated[PressureControl | DistanceControl | ElectrochromicControl, Field(discriminator="kind")]
+    ) = "device"
+    solar_wind: Winds | None = None
+
+
+class Ensemble(Swarm):
+    """Flights through winds (or sunshine) of their own. seed : that of the wind if absent; keep : flights drawn
+    whole."""
+
+    flights: Annotated[int, Field(ge=2, le=1_000_000)] = 200
+    seed: Annotated[int, Field(ge=0)] | None = None
+    keep: Annotated[int, Field(ge=1, le=200)] = 60
+
+
+class Chaos(Swarm):
+    """What order + 1 flights tell about a gamma-distributed pressure that stays the same for a whole flight."""
+
+    order: Annotated[int, Field(ge=1, le=30)] = 5
+    basis: Literal["root", "laguerre"] = "root"
+
+
 class Recording(Section):
     """How the recording plays."""
 
@@ -773,9 +825,13 @@ class Recording(Section):
 
 
 class Expectation(Section):
-    """A quantity that the run must reach: value and tolerance in the quantity's own unit."""
+    """A quantity that the run must reach: value and tolerance in the quantity's own unit. ensemble : of its flights
+    instead, a statistic of their ends: the mean, the mean miss of the nominal flight's end, or the standard
+    deviation."""
 
     quantity: str
+    ensemble: str | None = None
+    statistic: Literal["mean", "miss", "deviation"] | None = None
     closed_form: Literal["kepler", "reduced-kepler", "displaced-orbit", "logarithmic-spiral"] | None = None
     at: Literal["start", "end", "min", "max", "mean", "drift"] | str | None = None
     at_time: Time | None = None
@@ -792,6 +848,8 @@ class Expectation(Section):
         if (self.quantity == "closed_form_error") != (self.closed_form is not None):
             raise _wrong('closed_form belongs to quantity = "closed_form_error" and to no other')
         _one_of(self, "at", "at_time")
+        if (self.ensemble is None) != (self.statistic is None):
+            raise _wrong("ensemble and statistic belong together")
         _one_of(self, "within", "within_percent")
         if self.value == 0 and self.within_percent is not None:
             raise _wrong("of a value of 0 no percentage can be taken: give within")

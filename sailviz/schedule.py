@@ -59,7 +59,7 @@ def schedule(scene, table) -> Schedule:
     lines = np.zeros((len(breaks), 8))
     lines[:, 0], lines[:, 1], lines[:, 2] = weather.pressure[now], weather.density[now], weather.potential[now]
     lines[:, 5], lines[:, 6] = np.isin(breaks, updates), on
-    return Schedule(breaks, on.astype(float), switches, histories, lines, _law(law, scene, weather.reference))
+    return Schedule(breaks, on.astype(float), switches, histories, lines, control_row(law, scene, weather.reference))
 
 
 @dataclass(frozen=True)
@@ -75,14 +75,21 @@ class _Weather:
     reference: float  # Pa
 
 
-def _law(law, scene, reference):
-    """The row of propagate.control for the scene's controller."""
+def control_row(law, scene, reference):
+    """The row of propagate.control for a controller of the scene's craft, None for constant voltage; reference Pa."""
+    potential = getattr(scene.device, "wind_potential", WIND_POTENTIAL)
+    if law is None:
+        nominal = getattr(scene.device, "voltage", None) or NOMINAL_VOLTAGE
+        highest = max(nominal, 2 * NOMINAL_VOLTAGE)
+        return control.row(
+            nominal_voltage=nominal, maximum_voltage=highest, wind_potential=potential, reference_pressure=reference
+        )
     return control.row(
         law.kind,
         nominal_voltage=law.nominal_voltage,
         maximum_voltage=law.maximum_voltage,
         minimum_voltage=law.minimum_voltage,
-        wind_potential=scene.device.wind_potential,
+        wind_potential=potential,
         reference_pressure=reference,
         interval=law.interval,
         dead_band=law.dead_band,
@@ -110,11 +117,17 @@ def _weather(scene, duration) -> _Weather:
     pressure = solar_wind.history(law, times, wind.seed, wind.variation, **memory)
     if wind.yearly_deviation:
         pressure = pressure * solar_wind.yearly_factor(times, wind.seed, wind.yearly_deviation)
-    reference = law.reference_pressure(wind.reference == "unbiased")
+    reference = reference_pressure(wind, law)
     factors = solar_wind.thrust_factor(pressure, reference)
     flat = np.ones_like(pressure)
     columns = {"solar_wind_pressure_Pa": pressure}
     return _Weather(times, factors, columns, pressure, np.nan * flat, potential * flat, reference)
+
+
+def reference_pressure(wind, law) -> float:
+    """Pressure of nominal thrust, Pa: as a wind says, or from its law or series."""
+    given = wind.reference
+    return law.reference_pressure(given == "unbiased") if isinstance(given, str) else given
 
 
 def wind_law(wind) -> wind_laws.Law:
@@ -132,23 +145,23 @@ def _series(path, repair):
     return (wind_series.read_omni if text else wind_series.read_series)(path, repair=repair)
 
 
-def wind_file(scene) -> Path:
-    """Where a scene's wind series lies: beside the scene file, or an absolute path."""
+def wind_file(scene, wind) -> Path:
+    """Where a wind's series lies: beside the scene file, or an absolute path."""
     here = Path(scene.source).parent if Path(scene.source).is_file() else Path()
-    return here / scene.environment.solar_wind.file
+    return here / wind.file
 
 
-def measured_wind(scene):
-    """The scene's measured series. SceneError where it cannot be used."""
+def measured_wind(scene, wind, place="environment.solar_wind"):
+    """The measured series of a wind of the scene. SceneError where it cannot be used."""
     try:
-        return _series(str(wind_file(scene)), scene.environment.solar_wind.repair)
+        return _series(str(wind_file(scene, wind)), wind.repair)
     except (OSError, ValueError) as error:
         what = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise SceneError([Fault("environment.solar_wind.file", f"{what}.")], scene.source) from None
+        raise SceneError([Fault(f"{place}.file", f"{what}.")], scene.source) from None
 
 
 def _replayed(scene, wind, duration, potential) -> _Weather:
-    series = measured_wind(scene)
+    series = measured_wind(scene, wind)
     times = series.step * np.arange(int(np.ceil(duration / series.step * (1 - 1e-12))))
     start = wind.start
     if start is not None:
@@ -160,7 +173,7 @@ def _replayed(scene, wind, duration, potential) -> _Weather:
     if wind.potential == "from speed" and met.speed is None:
         what = "the series has no speed to make a potential of."
         raise SceneError([Fault("environment.solar_wind.potential", what)], scene.source)
-    reference = series.reference_pressure(wind.reference == "unbiased")
+    reference = reference_pressure(wind, series)
     v_w = potential * np.ones(len(times))
     factors = solar_wind.thrust_factor(met.pressure, reference)
     columns = {"solar_wind_pressure_Pa": met.pressure}
@@ -174,16 +187,26 @@ def _replayed(scene, wind, duration, potential) -> _Weather:
 
 
 def _sunlight(scene, light, duration) -> _Weather:
-    times = light.redraw * np.arange(int(np.ceil(duration / light.redraw)))
-    since = 0.0 if scene.epoch is None else irradiance.since_maximum(np.datetime64(scene.epoch_utc, "s"))
-    share = irradiance.cycle(times, since, light.amplitude) + irradiance.flicker(times, light.seed, light.flicker)
+    times, share = sunlight(scene, light, duration, light.seed)
     columns, factors = {"irradiance_W_m2": SOLAR_IRRADIANCE * share}, share
     law = scene.device.control
     if law is not None:
-        from sailviz.uncertainty.control import electrochromic_factor, electrochromic_state
-
-        state = electrochromic_state(share, law.fraction, share.min())
-        factors = share / share.min() * electrochromic_factor(state, law.fraction)
-        columns["electrochromic_state"] = state
+        factors, columns["electrochromic_state"] = electrochromic(share, law.fraction)
     flat = np.ones_like(share)
     return _Weather(times, factors, columns, flat, flat, flat, 1.0)
+
+
+def sunlight(scene, light, duration, seed, flight=None):
+    """(times (k,) s, S / S0 (k,)) of a scene's varying Sun."""
+    times = light.redraw * np.arange(int(np.ceil(duration / light.redraw)))
+    since = 0.0 if scene.epoch is None else irradiance.since_maximum(np.datetime64(scene.epoch_utc, "s"))
+    noise = irradiance.flicker(times, seed, light.flicker, flight=flight)
+    return times, irradiance.cycle(times, since, light.amplitude) + noise
+
+
+def electrochromic(share, fraction):
+    """(thrust factor, state) (k,) of a sail that pushes as under the smallest S / S0 (k,) of its flight."""
+    from sailviz.uncertainty.control import electrochromic_factor, electrochromic_state
+
+    state = electrochromic_state(share, fraction, share.min())
+    return share / share.min() * electrochromic_factor(state, fraction), state

@@ -22,7 +22,7 @@ from sailviz.scene_sections import HELD_STARTS
 SHELL_ANGLES, SHELL_STEP = 120, 25e3  # round the orbit; m between altitudes
 
 
-def setting_of(p: Plan, planets, rows) -> Setting:
+def setting_of(p: Plan, planets, rows, clouds=()) -> Setting:
     scene = p.scene
     duration = scene.propagation.duration
     return Setting(
@@ -50,6 +50,7 @@ def setting_of(p: Plan, planets, rows) -> Setting:
         identity=p.identity,
         play_duration=scene.recording.play_duration,
         shells=_shells(p),
+        clouds=clouds,
     )
 
 
@@ -68,7 +69,7 @@ def _accuracy(p: Plan) -> str:
 def _family(scene) -> str:
     if scene.body == "earth":
         return "deorbit"
-    if scene.environment.solar_wind.kind != "steady":
+    if scene.environment.solar_wind.kind != "steady" or scene.ensemble or scene.chaos:
         return "wind"
     return "displaced" if scene.start.kind in HELD_STARTS else "spirals"
 

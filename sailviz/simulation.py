@@ -86,6 +86,7 @@ def _blocks(p: Plan, block_rows, progress, drawn):
     run = p.scene.propagation
     output = OutputTimes(run)
     rows = output.rows
+    clouds = _clouds(p, output) if drawn or any(item.ensemble for item in p.scene.expect) else ()
     integrator = INTEGRATORS[p.choice.integrator]
     state = integrator.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
     setting = None
@@ -111,7 +112,7 @@ def _blocks(p: Plan, block_rows, progress, drawn):
         if len(columns[0]):
             if setting is None:
                 planets = planets_in_view(p) if drawn else {}
-                setting = setting_of(p, planets, rows)
+                setting = setting_of(p, planets, rows, clouds)
             block = _observed(p, *columns, first, off_time)
             yield replace(
                 block,
@@ -129,6 +130,15 @@ def _blocks(p: Plan, block_rows, progress, drawn):
         if last:
             progress(1.0)
             return
+
+
+def _clouds(p: Plan, output):
+    """The flights beside the scene's own; what they need is imported only where a scene has them."""
+    if not p.scene.ensemble and not p.scene.chaos:
+        return ()
+    from sailviz.clouds import clouds_of
+
+    return clouds_of(p, output)
 
 
 def _fill(p: Plan, state, times, switches, output_rows, progress):

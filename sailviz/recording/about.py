@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sailviz.recording.clouds import legend, scoreboard
 from sailviz.run import Event, Setting
 
 
@@ -11,7 +12,8 @@ def about(setting: Setting, notes=()) -> str:
     notes : what colours mean, one line each
     """
     lines = [f"**{setting.title}**", "", setting.about.strip(), ""]
-    lines += [f"- {hint.strip()}" for hint in (*setting.look_for, *notes)]
+    lines += [f"- {hint.strip()}" for hint in (*setting.look_for, *notes, *legend(setting))]
+    lines += scoreboard(setting)
     facts = [f"{name} **{value}**" for name, value in setting.parameters]
     if setting.thesis:
         facts.append(f"thesis, section **{setting.thesis}**")

@@ -7,7 +7,8 @@ import rerun.blueprint as rrb
 from rerun.blueprint.archetypes import PlotBackground, TextLogColumns
 from rerun.blueprint.encodings import TextLogColumn, TextLogColumnKind, TimelineColumn
 
-from sailviz.recording.layout import DESCENT, Camera, Layout
+from sailviz.recording.clouds import BOX, Arrival
+from sailviz.recording.layout import DESCENT, TUBE, Camera, Layout
 from sailviz.recording.look import BACKGROUND
 from sailviz.recording.slots import PlotView
 
@@ -41,9 +42,12 @@ def arrange(layout: Layout) -> rrb.Container:
         rrb.TextLogView(origin="/log", name="Events", columns=event_columns(layout)),
         active_tab=0,
     )
+    below = close_view(layout.close_up)
+    if layout.arrivals:
+        below = rrb.Tabs(*(arrival_view(arrival) for arrival in layout.arrivals), below, active_tab=0)
     left = rrb.Vertical(
         rrb.Tabs(*(space_view(layout, camera) for camera in layout.cameras), active_tab=0),
-        rrb.Horizontal(close_view(layout.close_up), words, column_shares=[3, 2]),
+        rrb.Horizontal(below, words, column_shares=[1, 1] if layout.arrivals else [3, 2]),
         row_shares=[4, 3],
     )
     right, shares = [], []
@@ -51,6 +55,10 @@ def arrange(layout: Layout) -> rrb.Container:
         plots = [plot_view(plot) for plot in slot.plots]
         right.append(plots[0] if len(plots) == 1 else rrb.Tabs(*plots, active_tab=0))
         shares.append(slot.share)
+    if layout.arrivals:
+        name = "Flights by distance from nominal [% over 10⁻³ au]"
+        right.append(rrb.BarChartView(origin="/histogram", contents=["+ /histogram/**"], name=name))
+        shares.append(2.0)
     if layout.lanes:
         lanes = [f"+ /phase/{lane}" for lane in layout.lanes]
         right.append(rrb.StateTimelineView(origin="/phase", contents=lanes, name="Phases", time_view=WHOLE_TIME))
@@ -68,6 +76,10 @@ def event_columns(layout: Layout) -> TextLogColumns:
 def space_view(layout: Layout, camera: Camera) -> rrb.Spatial3DView:
     contents = ["+ /world/**", "- /world/plane/**", "+ /world/plane/shells/**"]
     contents += [f"- {path}/**" for path in layout.hidden]
+    if layout.arrivals:
+        contents += ["- /world/cloud/**"]
+        kinds = ("tube",) if camera.name == TUBE else ("flights", "now", "ellipse")
+        contents += [f"+ /world/cloud/{name}/{kind}/**" for name in layout.clouds for kind in kinds]
     if camera.name == DESCENT:
         contents = [f"+ /world/{name}/**" for name in ("stars", "plane", "center", "night")]
         contents += ["- /world/night/umbra", "- /world/night/sunlight/**"]
@@ -82,6 +94,17 @@ def space_view(layout: Layout, camera: Camera) -> rrb.Spatial3DView:
         line_grid=rrb.LineGrid3D(visible=False),
         overrides=trail_ranges(layout),
         eye_controls=eye(camera),
+    )
+
+
+def arrival_view(arrival: Arrival) -> rrb.Spatial2DView:
+    (x, y), margin = BOX, 1.12
+    return rrb.Spatial2DView(
+        name=arrival.name,
+        origin=arrival.path,
+        contents=[f"+ {arrival.path}/**"],
+        background=BACKGROUND,
+        visual_bounds=rrb.VisualBounds2D(x_range=[-margin * x, margin * x], y_range=[-margin * y, margin * y]),
     )
 
 
@@ -110,7 +133,9 @@ def trail_ranges(layout: Layout) -> dict:
         "/world/ladder": time_range(layout, None, None),
         "/world/plane/ladder": time_range(layout, None, None),
         "/world/plane/rungs": time_range(layout, None, None),
+        "/world/nominal/path": time_range(layout, None, 0.0),
     }
+    ranges |= {f"/world/cloud/{name}/flights": time_range(layout, None, 0.0) for name in layout.clouds}
     if layout.future:
         ranges["/world/trail/future"] = time_range(layout, 0.0, None)
     else:

@@ -13,6 +13,7 @@ from sailviz.recording import rows
 from sailviz.recording.about import about, event_line
 from sailviz.recording.blueprint import blueprint
 from sailviz.recording.closeup import SailCloseUp
+from sailviz.recording.clouds import Clouds
 from sailviz.recording.curves import Curves
 from sailviz.recording.layout import Extents, Layout, lay_out
 from sailviz.recording.pen import Pen
@@ -72,6 +73,7 @@ class Drawing:
         close_up = TetherCloseUp if self._setting.craft.kind == "plasma-brake" else SailCloseUp
         self._close_up = close_up(self._pen, block)
         self._curves = Curves(self._pen, block, self._frame)
+        self._clouds = Clouds(self._pen, self._setting, self._frame) if self._setting.clouds else None
         text = about(self._setting, self._world.notes)
         self._pen.static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
         start = rows.timelines(self._setting, [block.first], block.time[:1])

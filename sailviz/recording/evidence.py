@@ -77,10 +77,12 @@ def evidence(source, label: str = "") -> Evidence:
 
 
 def of_run(run: Run, label: str) -> Evidence:
-    from sailviz.recording.truth import tables
+    from sailviz.recording.truth import cloud_path, cloud_table, tables
 
-    columns = {entity: table for entity, table in tables(run).items() if table}
     steps = run.first + np.arange(len(run))
+    found = {entity: Table(steps, run.time, table) for entity, table in tables(run).items() if table}
+    for cloud in run.setting.clouds:
+        found[cloud_path(cloud)] = Table(cloud.step, cloud.time, cloud_table(cloud))
     events = sorted(run.events, key=lambda event: event.time)
     rows = np.minimum(np.searchsorted(run.time, [event.time for event in events], side="left"), len(run) - 1)
     setting = run.setting
@@ -101,8 +103,8 @@ def of_run(run: Run, label: str) -> Evidence:
     }
     return Evidence(
         label,
-        tuple(columns),
-        lambda entity: Table(steps, run.time, columns[entity]),
+        tuple(found),
+        found.__getitem__,
         tuple(
             EventRow(event.name, float(event.time), np.broadcast_to(event.state, 7), int(steps[row]))
             for event, row in zip(events, rows, strict=True)
@@ -113,7 +115,7 @@ def of_run(run: Run, label: str) -> Evidence:
 
 
 def of_recording(recording: Recording, label: str) -> Evidence:
-    known = [entity for entity in TRUTH if entity in recording]
+    known = truth_of(recording)
     sailviz = bool(recording.contract)
     entities = known if sailviz else [name for name in recording.entities if numeric(recording, name)]
     facts = {}
@@ -133,6 +135,12 @@ def of_recording(recording: Recording, label: str) -> Evidence:
         views=views_of(recording),
         picture=(lambda: picture_of(recording)) if sailviz else None,
     )
+
+
+def truth_of(recording: Recording) -> list[str]:
+    """The entities of the contract that have rows: those of the run, then those of its ensembles."""
+    clouds = [name for name in recording.entities if name.startswith("/ensemble/") and name.count("/") == 2]
+    return [entity for entity in TRUTH if entity in recording] + clouds
 
 
 def of_npz(path: Path, label: str) -> Evidence:
@@ -252,8 +260,9 @@ def picture_of(recording: Recording) -> Iterator[tuple[str, dict[str, tuple[np.n
     """(entity, name -> (steps, Arrow column)) of everything that is there to be looked at. Static columns have the
     step -1; those of several rows stand in order of step.
     """
+    apart = {*APART, *truth_of(recording)}
     for name in recording.entities:
-        if name in APART:
+        if name in apart:
             continue
         batches = [chunk.to_record_batch() for chunk in recording._chunks(name)]
         temporal = [batch for batch in batches if any(line in batch.schema.names for line in TIMELINES)]

@@ -1,7 +1,7 @@
 """Recordings as tables for other programs: CSV, Parquet, numpy archives, and orbit ephemeris messages.
 
 csv, parquet   one table: step, time_s, utc where there is an epoch, then entity.column_unit[.component]; events in a
-               second file beside it, NAME.events.csv
+               second file beside it, NAME.events.csv, and each ensemble in NAME.ensemble.OWN_NAME.csv
 npz            every column under its own key, e.g. state.position_m (n, 3), events.time_s, scene.identity
 oem            position and velocity, CCSDS 502.0-B, in EME2000
 """
@@ -19,6 +19,7 @@ from sailviz.errors import RecordingError
 from sailviz.recording.evidence import Evidence, Table, evidence
 
 FORMATS = ("csv", "parquet", "npz", "oem")
+FEW = 5  # rows of an entity that stands on other rows than the truth, where only a part of those is wanted
 STATE = ("position_m", "velocity_m_s")
 LETTERS = {"quaternion": "xyzw", "acceleration_rtn_m_s2": "rtn"}
 
@@ -81,8 +82,13 @@ def _write_tables(data: Evidence, path: Path, to: str, wanted) -> tuple[Path, ..
     meta = {b"sailviz": json.dumps(data.facts, sort_keys=True).encode()}
     if not entities:
         return (_atomic(path, lambda part: _write_arrow(part, events.replace_schema_metadata(meta), to)),)
-    table = flat_table(data, entities).replace_schema_metadata(meta)
+    apart = [] if wanted else [name for name in entities if name.startswith("/ensemble/")]  # on rows of their own
+    table = flat_table(data, [name for name in entities if name not in apart]).replace_schema_metadata(meta)
     written = [_atomic(path, lambda part: _write_arrow(part, table, to))]
+    for name in apart:
+        beside = path.with_name(f"{path.stem}{name.replace('/', '.')}{path.suffix}")
+        own = flat_table(data, [name]).replace_schema_metadata(meta)
+        written.append(_atomic(beside, lambda part, own=own: _write_arrow(part, own, to)))
     if events is not None:
         beside = path.with_name(f"{path.stem}.events{path.suffix}")
         written.append(_atomic(beside, lambda part: _write_arrow(part, events, to)))
@@ -153,14 +159,16 @@ def events_table(data: Evidence) -> pa.Table:
 # ---------------------------------------------------------------- numpy archive
 def arrays(data: Evidence, wanted=(), rows=None) -> dict[str, np.ndarray]:
     """Everything as arrays by key: state.position_m, events.name, scene.identity ... rows : indices into the rows of
-    the truth, for a part of them; the archive then says that it is thinned.
+    the truth, for a part of them, and FEW of any other entity; the archive then says that it is thinned.
     """
     found: dict[str, np.ndarray] = {}
     steps = data.table("/state").step if "/state" in data.entities else None
     for entity in [name for name in wanted or data.entities if name != "/events"]:
         table, key = data.table(entity), entity.strip("/")
         same = steps is not None and np.array_equal(table.step, steps)
-        pick = rows if rows is not None and same else slice(None)
+        pick = slice(None)
+        if rows is not None:
+            pick = rows if same else np.unique(np.linspace(0, len(table) - 1, FEW).round().astype(int))
         if entity == "/state" or not same or wanted:
             found[f"{key}.step"] = np.asarray(table.step)[pick]
             found[f"{key}.time_s"] = np.asarray(table.time, float)[pick]

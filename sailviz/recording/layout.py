@@ -8,14 +8,17 @@ import numpy as np
 
 from sailviz.frames import unit
 from sailviz.recording import cameras, look, rows
+from sailviz.recording.clouds import Arrival, arrivals_of, slots_of
 from sailviz.recording.curves import Curves
 from sailviz.recording.samples import PLANE_TURNS, Frame, Samples
 from sailviz.recording.slots import Slot, column, plot_views
+from sailviz.recording.truth import word
 from sailviz.run import Run, Setting
 
 PUSHES = 400  # rows at which the ends of arrows are looked at
 SEASON = 30 * 86400.0  # s of a run from which the eye over a planet goes along with the Sun
 DESCENT = "Descent (orbits in one plane, to scale)"
+TUBE = "Percentiles"  # the view of clouds as tubes
 DEPARTING = 0.02  # relative change of distance below which an orbit counts as closed
 
 
@@ -54,6 +57,8 @@ class Layout:
     timelines: tuple[str, ...]
     speed: float  # seconds of the run in one second of replay
     rows_per_second: float
+    arrivals: tuple[Arrival, ...] = ()  # planes in which clouds are seen
+    clouds: tuple[str, ...] = ()  # their names as parts of paths
 
 
 class Extents:
@@ -100,9 +105,11 @@ class Extents:
 def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) -> Layout:
     """The layout of a run that reaches as far as `extents` says."""
     references = [float(np.linalg.norm(r.points, axis=1).max()) for r in setting.references if r.role != "planet"]
-    radius = max([extents.farthest, *references]) / frame.unit
+    spread = [float(cloud.percentiles.get("radius_m", cloud.nominal[:, :1].T).max()) for cloud in setting.clouds]
+    radius = max([extents.farthest, *references, *spread]) / frame.unit
     middle = Samples.of(extents.middle, np.array([extents.middle.first]), frame)
     sail = look.SAIL.get(setting.craft.kind, 0.1) * radius
+    sail *= look.AMONG_MANY if setting.clouds else 1.0
     tether = 0.0
     if not frame.sun and setting.body.radius > 0:
         sail = 0.14 * radius if setting.craft.kind == "plasma-brake" else sail
@@ -112,6 +119,7 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
     still = extents.farthest - extents.nearest < DEPARTING * extents.farthest
     closed = bool(still and turns > 1.2 and not frame.sparse)
     thrust_scale = look.THRUST_LENGTH * radius / extents.thrust if extents.thrust > 0 else 1.0
+    thrust_scale *= look.AMONG_MANY if setting.clouds else 1.0
     if frame.sun or setting.body.radius == 0:
         tips = extents.tips(thrust_scale * frame.unit) / frame.unit
         views = about_sun(radius, extents.lowest / frame.unit, extents.highest / frame.unit, tips, middle, setting)
@@ -124,6 +132,9 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
     shown, environment = plot_views(curves, frame, setting.craft.kind not in ("plasma-brake", "none"))
     lanes = tuple(lane for lane, changes in curves.changes.items() if changes)
     slots, lane_share = column(shown, environment, lanes)
+    if setting.clouds:
+        slots, lanes = slots_of(setting, shown, environment), ()
+        names = (*names, replace(names[0], name=TUBE))
     return Layout(
         sun=frame.sun,
         scene_radius=radius,
@@ -146,6 +157,8 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
         speed=(extents.reached if extents.finished and extents.reached > 0 else setting.duration)
         / setting.play_duration,
         rows_per_second=setting.rows / setting.duration,
+        arrivals=arrivals_of(setting) if setting.clouds else (),
+        clouds=tuple(word(cloud.name) for cloud in setting.clouds),
     )
 
 
@@ -189,6 +202,10 @@ def about_sun(radius: float, lowest: float, highest: float, tips, middle: Sample
     nearer = 0.0 if lifted else -0.3 * radius
     middle_of_view = np.array([0.0, nearer, 0.02 * radius + raised])
     distance = max(distance, distance_to_see(tips, middle_of_view, direction))
+    if setting.clouds:  # steeper and closer: clouds lie in the plane of motion
+        direction, distance = unit(np.array([0.05, -0.76, 0.65])), 1.92 * radius
+        if lifted:
+            direction, distance = unit(np.array([0.08, -0.88, 0.47])), max(1.92 * radius, half / 0.38)
     follow = follow_eye(middle, setting.craft.kind) * radius
     return [
         Camera("System", "/", tuple((middle_of_view + distance * direction).tolist()), tuple(middle_of_view.tolist())),
@@ -287,10 +304,10 @@ def name_views(views: list[Camera], setting: Setting, frame: Frame, sail: float,
 
 def in_words(factor: float) -> str:
     """1234567 -> 1.2 million; two digits are enough for an exaggeration."""
-    for size, word in ((1e9, " billion"), (1e6, " million"), (1e3, ",000")):
+    for size, name in ((1e9, " billion"), (1e6, " million"), (1e3, ",000")):
         if factor >= size:
             value = float(f"{factor / size:.2g}")
-            if word == ",000" and value != int(value):
+            if name == ",000" and value != int(value):
                 return f"{int(value * 1000):,}"
-            return f"{value:.10g}{word}"
+            return f"{value:.10g}{name}"
     return f"{float(f'{factor:.2g}'):.10g}"

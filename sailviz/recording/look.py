@@ -32,6 +32,8 @@ INITIAL = [92, 120, 150]
 HEIGHT = [110, 48, 78]
 REFERENCE = [120, 136, 165]
 APPROXIMATION = [255, 176, 66]
+NOMINAL = [255, 255, 255]
+AXES = [110, 126, 155]
 PRIMER = [64, 224, 208]
 FAULT = [255, 84, 84]
 ECLIPTIC = [60, 90, 150, 6]
@@ -92,14 +94,18 @@ WIDTH = {  # half the width of a line in ui points
     "flow": 1.0,
     "arc": 1.4,
     "ladder": 0.6,
+    "flight": 0.6,
+    "nominal": 1.6,
     "seam": 0.5,
     "plot": 1.6,
     "dense plot": 1.0,
 }
+FLIGHT_DOT = 1.3
 ANCHOR = 0.01  # ui points: a dot too small to see that carries a label
 
 # lengths in the system view as fractions of S, the largest distance from the centre that is drawn
 SAIL = {"solar-sail": 0.24, "electric-sail": 0.10, "plasma-brake": 0.10, "thruster": 0.10, "none": 0.0}
+AMONG_MANY = 0.6  # of it where there is a cloud to be seen
 THRUST_LENGTH = 0.34
 VELOCITY_LENGTH = 0.26
 PRIMER_LENGTH = 0.30

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pyarrow as pa
 import rerun as rr
 
 from sailviz.recording.look import ANCHOR, points, rgba
@@ -11,6 +12,16 @@ from sailviz.recording.meshes import Mesh
 
 def f4(values) -> np.ndarray:
     return np.ascontiguousarray(values, dtype=np.float32)
+
+
+class Arrow:
+    """An Arrow array where rerun wants a batch of components."""
+
+    def __init__(self, array: pa.Array):
+        self._array = array
+
+    def as_arrow_array(self) -> pa.Array:
+        return self._array
 
 
 class Pen:
@@ -38,6 +49,25 @@ class Pen:
 
     def lines(self, path: str, strips, color, width: float) -> None:
         self.static(path, rr.LineStrips3D([f4(strip) for strip in strips], colors=[list(color)], radii=points(width)))
+
+    def bars(self, path: str, index, heights, centers, color) -> None:
+        """heights (n, b): one bar chart a row, its bars over centers (b,), evenly spaced."""
+        width = np.full(len(centers), 0.92 * (centers[1] - centers[0]))
+        charts = [rr.BarChart(row, abscissa=centers, widths=width, color=list(color)) for row in np.asarray(heights)]
+        batches = [{b.component_descriptor(): b for b in chart.as_component_batches()} for chart in charts]
+        style = [d for d in batches[0] if d.component != "BarChart:values"]
+        self.static(path, *([batches[0][d]] for d in style))
+        values = next(d for d in batches[0] if d.component == "BarChart:values")
+        column = Arrow(pa.concat_arrays([batch[values].as_arrow_array() for batch in batches]))
+        self.columns(path, index, [rr.ComponentColumn(values, column)])
+
+    def ribbon(self, path: str, one, other, color) -> None:
+        """The band between two lines (k, 3), seen from both sides; color with alpha."""
+        k = np.arange(len(one) - 1)
+        corners = np.concatenate([one, other])
+        a, b, c, d = k, k + 1, len(one) + k, len(one) + k + 1
+        faces = np.concatenate([np.stack([a, b, c], 1), np.stack([b, d, c], 1)]).astype(np.uint32)
+        self.static(path, rr.Mesh3D(vertex_positions=f4(corners), triangle_indices=faces, albedo_factor=list(color)))
 
     def triangles(self, path: str, faces, color) -> None:
         """Faces (m, 3) and colour of a mesh whose corners have rows.
@@ -78,6 +108,8 @@ class Pen:
     def broken_strips(self, path: str, index, groups, colors=None) -> None:
         """groups : for each row a list of lines (k, 3); colors (n,) 0xRRGGBBAA."""
         lines = [f4(line) for group in groups for line in group]
+        if not lines:
+            return
         columns = [*rr.LineStrips3D.columns(strips=lines).partition([len(group) for group in groups])]
         if colors is not None:
             columns += rr.LineStrips3D.columns(colors=np.asarray(colors, np.uint32))

@@ -210,7 +210,7 @@ def environment_plot(name: str, color) -> Plot:
         unit = LOGARITHMIC_COLUMNS[name] if name in LOGARITHMIC_COLUMNS else LOGARITHMIC[ending]
         title = f"{words} [log10 {unit}]"
         return Plot(f"/plots/{name}", title, (words.lower(),), (color,), values)
-    factor, unit = UNITS.get(ending, (1.0, ""))
+    factor, unit = (1e-3, "kV") if name == "thrust_voltage_V" else UNITS.get(ending, (1.0, ""))
     title = f"{words} [{unit}]" if unit else words
     return Plot(
         f"/plots/{name}", title, (words.lower(),), (color,), lambda run: factor * run.environment[name][:, None]

@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 
 from sailviz.describe import duration
-from sailviz.recording.evidence import TRUTH, epoch_of, innermost, views_of
+from sailviz.recording.evidence import epoch_of, innermost, truth_of, views_of
 from sailviz.recording.reader import Entity, Recording, is_component, read, short
 
 
@@ -26,7 +26,7 @@ def info(source) -> dict:
 
     time = _entity(recording, "/state").get("time_s", np.zeros(0))
     epoch, views = epoch_of(recording), views_of(recording)
-    truth = [name for name in (*TRUTH, "/events") if name in recording]
+    truth = truth_of(recording) + [name for name in ("/events",) if name in recording]
     return {
         "path": str(recording.path),
         "bytes": recording.path.stat().st_size,
@@ -117,7 +117,8 @@ def in_words(facts: dict) -> str:
 def _expectation(item: dict) -> str:
     at = item.get("at") or f"t = {duration(item.get('at_time') or 0.0)}"
     within = f"{item['within_percent']:g} %" if item.get("within_percent") else f"{item.get('within') or 0:g}"
-    return f"{item['quantity']} at {at}: {item['value']:.10g} within {within}"
+    of = f", {item['statistic']} of {item['ensemble']}," if item.get("ensemble") else ""
+    return f"{item['quantity']}{of} at {at}: {item['value']:.10g} within {within}"
 
 
 def _plain(value):

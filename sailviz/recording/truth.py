@@ -6,6 +6,10 @@
 /elements     semi_major_axis_m, eccentricity, inclination_rad, raan_rad, argument_rad, true_anomaly_rad
 /environment  whatever acted, the unit in each name, (n,) or (n, 3); absent where nothing did
 /approximation  NAME_position_m (3) and NAME_error_m of every other answer that was asked for; absent without any
+/ensemble/NAME  of every ensemble, at times of some of the rows: nominal_position_m and mean_position_m (3),
+              covariance_m2 (9: radial, along and across the orbit, about the mean); percentiles at `levels`, columns of
+              that many numbers, unit in each name; kept_position_m (3 per flight drawn); one_NAME of the first flight;
+              saturated and histogram, shares. /ensemble/NAME/facts, static: levels, ends of the flights, words
 /events       name, time_s, state (position m, velocity m/s, mass kg: 7), at the first row not before the event
 /scene        static: what the run was made from and how far it got
 
@@ -20,14 +24,14 @@ import numpy as np
 import pyarrow as pa
 import rerun as rr
 
-from sailviz.run import Event, Run
+from sailviz.run import Cloud, Event, Run
 
 CONTRACT = "sailviz/1"
 
 
 def archetype(entity: str) -> str:
-    """Name of the archetype of an entity: /state -> sailviz.State."""
-    return "sailviz." + entity.strip("/").capitalize()
+    """Name of the archetype of an entity: /state -> sailviz.State, /ensemble/calm -> sailviz.Ensemble."""
+    return "sailviz." + entity.strip("/").split("/")[0].capitalize()
 
 
 def tables(run: Run) -> dict[str, dict[str, np.ndarray]]:
@@ -71,6 +75,49 @@ def tables(run: Run) -> dict[str, dict[str, np.ndarray]]:
             )
         },
     }
+
+
+ENDS = 10_000  # flights whose ends are recorded
+
+
+def cloud_path(cloud: Cloud) -> str:
+    return f"/ensemble/{word(cloud.name)}"
+
+
+def cloud_table(cloud: Cloud) -> dict[str, np.ndarray]:
+    """The columns of /ensemble/NAME, (n,) or (n, k)."""
+    length = np.ones((len(cloud.time), 3))
+    length[:, 1] = cloud.mean[:, 0]  # azimuth becomes a way along the orbit
+    along = cloud.covariance[:, :3, :3] * length[:, :, None] * length[:, None, :]
+    places = cloud.places(cloud.kept)
+    return {
+        "time_s": cloud.time,
+        "nominal_position_m": cloud.places(cloud.nominal),
+        "mean_position_m": cloud.places(cloud.mean),
+        "covariance_m2": along.reshape(-1, 9),
+        **{name: values.T for name, values in cloud.percentiles.items()},
+        **{f"one_{name}": values for name, values in cloud.one.items()},
+        "saturated": cloud.saturated,
+        "histogram": cloud.histogram,
+        "kept_position_m": places.transpose(1, 0, 2).reshape(len(cloud.time), -1),
+    }
+
+
+def cloud_facts(cloud: Cloud) -> rr.DynamicArchetype:
+    """The static entity /ensemble/NAME/facts."""
+    names = ("radius_m", "azimuth_rad", "height_m", "radial_speed_m_s", "transverse_speed_m_s", "axis_speed_m_s")
+    ends = cloud.end[:ENDS]
+    values = {
+        **{name: [getattr(cloud, name)] for name in ("name", "words", "wind", "method", "control", "flights", "seed")},
+        **{name: [float(getattr(cloud, name))] for name in ("mean_factor", "mean_voltage", "mean_saturated", "error")},
+        **{name: [value] for name, value in cloud.limits.items()},
+        "tail": [float(cloud.tail)],
+        "levels": cloud.levels,
+        "histogram_edges_m": cloud.histogram_edges,
+        **{f"end_{name}": ends[:, k] for k, name in enumerate(names)},
+        **{f"nominal_end_{name}": cloud.nominal[-1:, k] for k, name in enumerate(names)},
+    }
+    return rr.DynamicArchetype(archetype("/ensemble"), components={name: pa.array(v) for name, v in values.items()})
 
 
 def word(name: str) -> str:

@@ -13,12 +13,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from numpy.polynomial.legendre import Legendre
+from scipy import stats
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline, RegularGridInterpolator
 from scipy.optimize import brentq
 
 import sailviz
+from sailviz.design.smoothed_transfer import smoothed_transfer
 from sailviz.expectations import check
+from sailviz.scene_sections import SteadyWind
 from sailviz.shipped import shipped_folder, shipped_scenes
 
 AU, MU_SUN, MU_EARTH, RADIUS_EARTH = 149_597_870_700.0, 1.32712440018e20, 3.986004418e14, 6_378_137.0
@@ -31,6 +34,7 @@ FILMS = {  # b1, b2, b3, efficiency
     "jpl-2015": (0.0723, 0.8554, -0.0030, 1),
 }
 SCENES = sorted(shipped_scenes())
+MOST_JUMPS = 80  # of the thrust, each of which begins the integration anew
 
 
 @pytest.mark.parametrize("name", SCENES)
@@ -44,7 +48,7 @@ def test_scene_fulfils_its_expectations(shipped_run, name):
 def test_scene_agrees_with_scipy(shipped_run, name):
     """Within 1e-8 of the distance over twenty revolutions or 2 % of the run, whichever is shorter, and one at least.
 
-    Where tables are looked up, which plain Python does slowly, two revolutions; and in steps of 10 s, since at the
+    Where the thrust jumps often, as far as MOST_JUMPS of it. Where tables are looked up, which plain Python does slowly, two revolutions; and in steps of 10 s, since at the
     scene's own tolerance the kinks of tables and the edges of the shadow cost up to a metre per revolution.
     """
     scene, run = shipped_run(name)
@@ -61,7 +65,8 @@ def test_scene_agrees_with_scipy(shipped_run, name):
         fine = own | {"tolerance": 1e-13, "largest_step_s": 10, "integrator": "dop853"}
         again = [sailviz.simulate(scene.with_values({"propagation": values})) for values in (own, fine)]
         runs = [(again[0], 1e-6), (again[1], 1e-8)]
-    rows = runs[0][0].time <= last
+    jumps = schedule(scene)[0]
+    rows = runs[0][0].time <= min([last, *jumps[MOST_JUMPS : MOST_JUMPS + 1]])
     assert rows.sum() > 5
     position = integrate(scene, np.concatenate([r, v, run.mass[:1]]), runs[0][0].time[rows])
     for flown, within in runs:
@@ -82,6 +87,7 @@ def tabled(scene):
 def integrate(scene, state, times):
     """Position (n, 3) at times, restarting wherever the thrust or a steering table has a kink."""
     breaks, factors = schedule(scene)
+    voltage = controlled(scene, state, breaks[breaks < times[-1]])
     edges = [*breaks[breaks < times[-1]], times[-1]]
     acceleration, mu = device(scene), body(scene)[0]
     longest = 30.0 if tabled(scene) else np.inf
@@ -91,7 +97,8 @@ def integrate(scene, state, times):
     for i, (begin, end) in enumerate(pairwise(edges)):
         inside = times[(times > begin) & (times <= end)]
         # a piece belongs to the values at its beginning: time never quite reaches the next kink
-        rhs = right_hand_side(scene, acceleration, factors[i], np.nextafter(end, begin))
+        factor = factors[i] if voltage is None else voltage(begin, state, factors[i])
+        rhs = right_hand_side(scene, acceleration, factor, np.nextafter(end, begin))
         asked = np.unique([*inside, end])
         y = solve_ivp(rhs, (begin, end), state, "DOP853", asked, rtol=1e-13, atol=atol, max_step=longest).y
         rows.append(y[:3, np.isin(asked, inside)].T)
@@ -108,32 +115,118 @@ def body(scene):
 
 
 def schedule(scene):
-    """(breaks, factors): the thrust factor is factors[i] from breaks[i] on."""
-    duration, wind = scene.propagation.duration, scene.environment.solar_wind
-    kinks, draws = [0.0], None
-    if wind.kind == "gamma":
-        draws = np.random.Generator(np.random.PCG64(wind.seed)).gamma(
-            wind.shape, wind.scale, int(np.ceil(duration / wind.redraw))
-        )
-        kinks += list(wind.redraw * np.arange(len(draws)))
-        assert wind.reference == "mean"
-    elif wind.kind != "steady":
-        raise NotImplementedError(wind.kind)
+    """(breaks, factors): the thrust factor at nominal voltage is factors[i] from breaks[i] on."""
+    duration, control = scene.propagation.duration, getattr(scene.device, "control", None)
+    redrawn, draws = history(scene)
     active = scene.device.active
-    kinks += [t for pair in active or [] for t in pair]
-    kinks += scene.steering.time if getattr(scene.steering, "interpolation", "cubic") != "cubic" else []
+    kinks = [0.0, *redrawn, *(t for pair in active or [] for t in pair)]
+    if getattr(control, "interval", None):
+        kinks += list(np.arange(0, duration, control.interval))
+    if scene.steering is not None and scene.steering.kind == "smoothed-transfer":
+        kinks += list(smoothed(scene)[0])
+    elif getattr(scene.steering, "interpolation", "cubic") != "cubic":
+        kinks += scene.steering.time
     breaks = np.array(sorted({t for t in kinks if 0 <= t < duration}))
-    factors = []
-    for t in breaks:
-        on = active is None or any(a <= t < b for a, b in active)
-        pressure = 1.0 if draws is None else draws[int((t + 1e-6) // wind.redraw)] / (wind.shape * wind.scale)
-        factors.append(on * np.sqrt(pressure))
-    return breaks, factors
+    on = np.array([active is None or any(a <= t < b for a, b in active) for t in breaks])
+    return breaks, on * draws[np.searchsorted(redrawn, breaks, side="right") - 1]
+
+
+def history(scene):
+    """(times, thrust over nominal thrust from each on) of the scene's wind or sunshine at nominal voltage."""
+    duration, wind, light = scene.propagation.duration, scene.environment.solar_wind, scene.environment.irradiance
+    if light.kind == "cycle":
+        times = np.arange(0, duration, light.redraw)
+        random = np.random.Generator(np.random.PCG64(np.random.SeedSequence(light.seed, spawn_key=(3,))))
+        noise = relaxing(random.standard_normal(len(times)), 0.80 ** (light.redraw / 86400))
+        since = (np.datetime64(scene.epoch_utc, "s") - np.datetime64("1991-01-27T16")) / np.timedelta64(1, "s")
+        turn = 2 * np.pi * (times + since) / (11.15 * 365.25 * 86400)
+        share = 1 + light.amplitude * np.cos(turn) + light.flicker * noise
+        if scene.device.control is not None:  # black takes half a mirror's push; the dimmest Sun is the reference
+            black = np.minimum(2 / scene.device.control.fraction * (1 - share.min() / share), 1)
+            share = share / share.min() * (1 - scene.device.control.fraction / 2 * black)
+        return times, share
+    if wind.kind == "steady":
+        return np.zeros(1), np.ones(1)
+    if wind.kind != "gamma":
+        raise NotImplementedError(wind.kind)
+    random = np.random.Generator(np.random.PCG64(wind.seed))
+    times = np.zeros(1) if wind.variation == "constant" else np.arange(0, duration, wind.redraw)
+    if wind.variation == "correlated":
+        z = relaxing(random.standard_normal(len(times)), np.exp(-wind.redraw / wind.correlation_time))
+        draws = stats.gamma(wind.shape, scale=wind.scale).ppf(stats.norm.cdf(z))
+    else:
+        draws = random.gamma(wind.shape, wind.scale, len(times))
+    reference = {"mean": wind.shape * wind.scale}.get(wind.reference, wind.reference)
+    return times, np.sqrt(draws / reference)
+
+
+def relaxing(z, memory):
+    """Independent normal numbers made into a chain that remembers."""
+    for i in range(1, len(z)):
+        z[i] = memory * z[i - 1] + np.sqrt(1 - memory**2) * z[i]
+    return z
+
+
+def controlled(scene, state, breaks):
+    """(time, state, factor at nominal voltage) -> factor under the scene's voltage control; None without any."""
+    law = getattr(scene.device, "control", None)
+    if law is None or law.kind == "electrochromic":
+        return None
+    potential, held = scene.device.wind_potential, [law.nominal_voltage]
+    updates = list(np.arange(0, scene.propagation.duration, law.interval))
+    aim = {} if law.kind == "pressure" else reference_flight(scene, state, [t for t in breaks if t in updates])
+
+    def factor(t, y, nominal):
+        if t in updates:
+            r, u = np.linalg.norm(y[:3]), y[:3] @ y[3:6] / np.linalg.norm(y[:3])
+            if law.kind == "pressure":
+                wanted = 1 / nominal
+            else:
+                r0, u0 = aim[t]
+                wanted = 1 + law.position_gain * (1 - r / r0) + law.speed_gain * (u0 - u) / np.sqrt(MU_SUN / r0)
+            wish = potential + (law.nominal_voltage - potential) * wanted
+            held[0] = min(max(wish, law.minimum_voltage), law.maximum_voltage)
+        return nominal * max(held[0] - potential, 0) / (law.nominal_voltage - potential)
+
+    return factor
+
+
+def reference_flight(scene, state, times):
+    """Time -> (distance, radial speed) of the flight in a steady wind, which the distance law leads back to."""
+    if hasattr(scene.start, "position_offset"):
+        return {t: (scene.start.radius, 0.0) for t in times}
+    calm = scene.environment.model_copy(update={"solar_wind": SteadyWind(kind="steady")})
+    free = scene.device.model_copy(update={"control": None})
+    rest = scene.model_copy(update={"environment": calm, "device": free})
+    step = 60.0  # a difference over two minutes gives the speed to 1e-9 of it
+    around = np.unique([t + k * step for t in times for k in (-1, 0, 1) if t + k * step >= 0])
+    r = dict(zip(around, np.linalg.norm(integrate(rest, state, around), axis=1), strict=True))
+    begin = state[:3] @ state[3:6] / np.linalg.norm(state[:3])
+    return {t: (r[t], (r[t + step] - r[t - step]) / (2 * step) if t else begin) for t in times}
+
+
+def smoothed(scene):
+    """(times, pitch, throttle) of a smoothed transfer: the design's own table, whose arrival is tested with it."""
+    s, r0 = scene.steering, scene.start.radius
+    strength = scene.device.characteristic_acceleration * AU * r0 / MU_SUN
+    clock = np.sqrt(r0**3 / MU_SUN)
+    return shot(s.radius / r0, strength, tuple(s.costates), scene.propagation.duration, s.hold, s.width, clock)
+
+
+@cache
+def shot(ratio, strength, costates, duration, hold, width, clock):
+    found = smoothed_transfer(ratio, strength, np.array(costates), duration / clock, hold / clock, width)
+    return found.time * clock / len(found.pitch) * np.arange(len(found.pitch)), found.pitch, found.throttle
 
 
 def right_hand_side(scene, acceleration, factor, latest):
+<<<<<<< HEAD
     mu, around = body(scene)[0], scene.environment
     drag = air_drag(scene)
+=======
+    mu, j2 = body(scene)[0], scene.environment.j2
+    smooth = smoothed(scene) if getattr(scene.steering, "kind", "") == "smoothed-transfer" else None
+>>>>>>> 4a92dca (Fly ensembles and polynomial chaos from scenes, and show the clouds: percentiles, ellipses, voltage, misses with and without control)
 
     def rhs(t, y):
         r, v, mass = y[:3], y[3:6], y[6]
@@ -148,6 +241,8 @@ def right_hand_side(scene, acceleration, factor, latest):
         if factor and acceleration is not None:
             throttle = getattr(scene.steering, "throttle", None)
             share = factor * (table(scene.steering, throttle, min(t, latest)) if throttle else 1.0)
+            if smooth is not None:
+                share *= smooth[2][np.searchsorted(smooth[0], min(t, latest), side="right") - 1]
             push, rate = acceleration(min(t, latest), r, v, mass)
             a, rate = a + share * push, share * rate
         return np.concatenate([v, a, [rate]])
@@ -174,6 +269,9 @@ def normal(scene, t, r, v):
         pitch, clock, _ = designed(scene, t)
         if pitch == 0:  # along the Sun line: no plane of motion is needed, and there may be none
             return r_hat
+    elif kind == "smoothed-transfer":
+        times, angles, _ = smoothed(scene)
+        pitch, clock = angles[np.searchsorted(times, t, side="right") - 1], np.pi / 2
     elif kind == "table":
         frame = steering.frame
         pitch, clock = (table(steering, column, t) for column in (steering.pitch, steering.clock))

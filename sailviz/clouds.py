@@ -1,0 +1,275 @@
+"""Scene -> Clouds: the flights that a scene wants beside its own, each through a wind or sunshine of its own.
+
+Every ensemble starts, steers and pushes as the scene's craft does. What differs is the wind and what the voltage does
+about it. Statistics come from all flights, the picture from those kept.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from sailviz.constants import AU, SOLAR_IRRADIANCE
+from sailviz.errors import Fault, SceneError
+from sailviz.plan import Plan, film_of, sail_strength
+from sailviz.run import Cloud
+from sailviz.schedule import control_row, electrochromic, measured_wind, reference_pressure, sunlight, wind_law
+
+OUTPUTS = 181  # rows of the run at which clouds are known
+RECORDED = 1024  # flights known at every one of them, for histograms
+BINS = 48
+TABLES = ("table", "smoothed-transfer")
+
+
+def clouds_of(p: Plan, output) -> tuple[Cloud, ...]:
+    """The clouds of a plan, at some of the times of its output rows. SceneError where flights cannot be flown."""
+    scene = p.scene
+    if not scene.ensemble and not scene.chaos:
+        return ()
+    if p.keep:
+        raise SceneError([Fault("ensemble", "flies the scene's own steering and forces, no functions.")], scene.source)
+    step = np.unique(np.round(np.linspace(0, output.rows - 1, min(OUTPUTS, output.rows))).astype(int))
+    times = np.array([output.between(int(k), 1)[0] for k in step])
+    if times[-1] < scene.propagation.duration:  # rows that stop short of it: the clouds do as well
+        times[-1] = min(times[-1], scene.propagation.duration)
+    makers = [(f"ensemble[{i}]", item, _drawn) for i, item in enumerate(scene.ensemble)]
+    makers += [(f"chaos[{i}]", item, _expanded) for i, item in enumerate(scene.chaos)]
+    found = []
+    for place, item, make in makers:
+        try:
+            found.append(make(p, item, place, step, times))
+        except ValueError as error:
+            raise SceneError([Fault(place, f"{error}.")], scene.source) from None
+    return _with_histograms(found)
+
+
+def _craft(p: Plan) -> dict:
+    """Keywords of `fly_ensemble` for the scene's craft and its steering."""
+    scene, design = p.scene, p.design
+    electric = scene.device.kind == "electric-sail"
+    options = {
+        "device": "electric-sail" if electric else film_of(scene),
+        "characteristic_acceleration": sail_strength(scene, design),
+        "mu": p.body.mu,
+    }
+    if electric:
+        options["model"] = scene.device.model
+    steering = scene.steering
+    law = steering.kind if steering is not None else "sun-facing"
+    if law in TABLES:
+        options |= {"table": p.table, "frame": getattr(steering, "frame", "orbital")}
+    elif law == "as designed":
+        options |= {"pitch": float(design.pitch), "clock": float(design.clock) if design.pitch else np.pi / 2}
+    elif law in ("orbital", "meridian"):
+        options |= {"pitch": steering.pitch, "clock": steering.clock, "frame": law}
+    if scene.start.kind in ("displaced", "heliostationary", "lagrange-point"):
+        options["aim"] = (scene.start.radius, 0.0)  # of the distance law; else the nominal flight
+    return options
+
+
+def _control(p: Plan, item):
+    device = p.scene.device
+    if item.control == "none":
+        return None
+    return getattr(device, "control", None) if item.control == "device" else item.control
+
+
+def _wind(p: Plan, item, place):
+    """(wind of the ensemble, seed, reference pressure Pa, wind in words)."""
+    from sailviz.uncertainty.ensembles import RandomWind, ReplayedWind
+
+    scene = p.scene
+    wind = item.solar_wind or scene.environment.solar_wind
+    seed = item.seed if item.seed is not None else wind.seed
+    if wind.kind == "replay":
+        series = measured_wind(scene, wind, "environment.solar_wind" if item.solar_wind is None else place)
+        made = ReplayedWind(series.pressure, series.step)
+        return made, seed, reference_pressure(wind, series), f"replayed from {wind.file}"
+    law = wind_law(wind)
+    made = RandomWind(law, wind.variation, wind.redraw, wind.correlation_time, wind.yearly_deviation)
+    words = f"{wind.kind}, {law.mean * 1e9:.3g} nPa, {wind.variation}"
+    return made, seed, reference_pressure(wind, law), words
+
+
+def _drawn(p: Plan, item, place, step, times) -> Cloud:
+    """Monte Carlo."""
+    from sailviz.uncertainty.ensembles import fly_ensemble
+
+    options = _craft(p)
+    flights, law, more = item.flights, _control(p, item), {}
+    if p.scene.device.kind == "solar-sail":
+        wind, seed, row, words, more = _sunshine(p, item, law, times)
+    else:
+        wind, seed, reference, words = _wind(p, item, place)
+        row = control_row(law, p.scene, reference)
+    ensemble = fly_ensemble(
+        p.position,
+        p.velocity,
+        p.scene.propagation.duration,
+        wind=wind,
+        control=row,
+        flights=flights,
+        seed=seed,
+        outputs=times,
+        keep=min(flights, RECORDED),
+        **options,
+    )
+    return _cloud(p, item, law, words, step, ensemble, "monte-carlo", more)
+
+
+def _sunshine(p: Plan, item, law, times):
+    """(wind, seed, control row, words, more quantities) of a solar sail under many Suns, with its own control."""
+    from sailviz.propagate import control
+    from sailviz.uncertainty.ensembles import GivenWind
+
+    scene, light = p.scene, p.scene.environment.irradiance
+    seed = item.seed if item.seed is not None else light.seed
+    drawn = [sunlight(scene, light, scene.propagation.duration, seed, flight) for flight in range(item.flights)]
+    share = np.array([one for _, one in drawn])
+    now = np.searchsorted(drawn[0][0], times, side="right") - 1
+    more = {"irradiance_W_m2": SOLAR_IRRADIANCE * share[:, now]}
+    factors = share
+    if law is not None:
+        pairs = [electrochromic(one, law.fraction) for one in share]
+        factors = np.array([factor for factor, _ in pairs])
+        more["electrochromic_state"] = np.array([state for _, state in pairs])[:, now]
+    row = control.row(reference_pressure=SOLAR_IRRADIANCE)
+    return GivenWind(SOLAR_IRRADIANCE * factors, light.redraw), seed, row, "the Sun's cycle and flicker", more
+
+
+def _expanded(p: Plan, item, place, step, times) -> Cloud:
+    """Polynomial chaos: the flights at the nodes, and what they tell of all."""
+    from sailviz.uncertainty import chaos
+    from sailviz.uncertainty.ensembles import LEVELS, GivenWind, fly_ensemble
+
+    wind = item.solar_wind or p.scene.environment.solar_wind
+    law, drawn = _control(p, item), wind_law(wind)
+    row = control_row(law, p.scene, reference_pressure(wind, drawn))
+    flown = []
+
+    def fly(pressures):
+        given = GivenWind(pressures[:, None], np.inf)
+        duration = p.scene.propagation.duration
+        swarm = fly_ensemble(
+            p.position,
+            p.velocity,
+            duration,
+            wind=given,
+            control=row,
+            flights=len(pressures),
+            outputs=times,
+            keep=len(pressures),
+            **_craft(p),
+        )
+        flown.append(swarm)
+        parts = [swarm.kept, *(q.kept[..., None] for q in (swarm.factor, swarm.voltage, swarm.pressure))]
+        return np.concatenate(parts, axis=-1)
+
+    found = chaos.expand(fly, drawn.shape, drawn.scale, item.order, item.basis)
+    swarm = flown[0]
+    spread = found.coefficients[1:, :, :6]
+    at = np.moveaxis(found.percentile(np.array(LEVELS)), 0, 0)
+    ensemble = replace(
+        swarm,
+        mean=found.mean[:, :6],
+        covariance=np.einsum("ntk,ntl->tkl", spread, spread),
+        percentiles=at[..., :6],
+        factor=replace(swarm.factor, percentiles=at[..., 6]),
+        voltage=replace(swarm.voltage, percentiles=at[..., 7]),
+        pressure=replace(swarm.pressure, percentiles=at[..., 8]),
+    )
+    words = f"{drawn.name if hasattr(drawn, 'name') else 'gamma'}, {drawn.mean * 1e9:.3g} nPa, constant"
+    return _cloud(p, item, law, words, step, ensemble, "polynomial-chaos", {}, float(np.max(found.tail[-1, :2])))
+
+
+def _cloud(p: Plan, item, law, wind, step, swarm, method, more, tail=0.0) -> Cloud:
+    """A Cloud from an Ensemble. more : further quantities of the recorded flights, name with unit -> (k, n)."""
+    electric = p.scene.device.kind == "electric-sail"
+    planar = not np.any(swarm.nominal[:, [2, 5]]) and not np.any(swarm.kept[..., 2])
+    names = ("radius_m" if planar else "axis_distance_m", "azimuth_rad", "height_m")
+    names += ("radial_speed_m_s", "transverse_speed_m_s", "axis_speed_m_s")
+    wanted = [k for k in range(6) if not planar or k not in (2, 5)]
+    bands = {names[k]: swarm.percentiles[..., k] for k in wanted}
+    one = {"thrust_factor": swarm.factor.kept[0]}
+    bands["thrust_factor"] = swarm.factor.percentiles
+    if electric:
+        bands |= {"thrust_voltage_V": swarm.voltage.percentiles, "solar_wind_pressure_Pa": swarm.pressure.percentiles}
+        one |= {"thrust_voltage_V": swarm.voltage.kept[0], "solar_wind_pressure_Pa": swarm.pressure.kept[0]}
+    for name, values in more.items():
+        bands[name] = np.percentile(values, swarm.levels, axis=0)
+        one[name] = values[0]
+    miss = swarm.kept - swarm.nominal
+    across = swarm.nominal[:, 0]
+    distance = np.sqrt(miss[..., 0] ** 2 + (across * miss[..., 1]) ** 2 + miss[..., 2] ** 2)
+    keep = len(swarm.kept) if method == "polynomial-chaos" else min(item.keep, len(swarm.kept))
+    control = None if law is None else law.kind
+    mean, deviation = swarm.mean, swarm.standard_deviation
+    end_mean, end_deviation = swarm.mean[-1], deviation[-1]
+    if method == "monte-carlo":
+        end_mean, end_deviation = swarm.end.mean(axis=0), swarm.end.std(axis=0, ddof=1)
+    limits = _limits(law, swarm) if electric else {}
+    return Cloud(
+        name=item.name,
+        words=_words(law, electric),
+        wind=wind,
+        method=method,
+        control=control or "none",
+        flights=swarm.flights,
+        seed=int(swarm.seed),
+        planar=bool(planar),
+        step=step,
+        time=swarm.time,
+        axes=swarm.axes,
+        nominal=swarm.nominal,
+        kept=swarm.kept[:keep],
+        mean=mean,
+        covariance=swarm.covariance,
+        levels=swarm.levels,
+        percentiles=bands,
+        one=one,
+        saturated=swarm.saturated,
+        end=swarm.end,
+        end_mean=end_mean,
+        end_deviation=end_deviation,
+        mean_factor=float(np.mean(swarm.flight_factor)),
+        mean_voltage=float(np.mean(swarm.flight_voltage)) if electric else float("nan"),
+        mean_saturated=float(np.mean(swarm.flight_saturated)) if electric else 0.0,
+        limits=limits,
+        miss=distance,
+        error=float(max(swarm.error, 0.0)),
+        tail=tail,
+    )
+
+
+def _limits(law, swarm) -> dict[str, float]:
+    """What bounds the voltage, V and Pa."""
+    from sailviz.propagate import control
+
+    row = swarm.control
+    found = {"nominal_voltage_V": float(row[control.NOMINAL]), "reference_pressure_Pa": swarm.reference_pressure}
+    if law is not None:
+        found["maximum_voltage_V"] = float(row[control.MAXIMUM])
+        slope = (row[control.MAXIMUM] - row[control.WIND]) / (row[control.NOMINAL] - row[control.WIND])
+        found["saturation_pressure_Pa"] = swarm.reference_pressure / slope**2
+    return found
+
+
+def _words(law, electric) -> str:
+    if law is None:
+        return "constant voltage" if electric else "no control"
+    if law.kind == "electrochromic":
+        return f"{100 * law.fraction:.2g} % of the sail turns black"
+    return f"{law.kind} law, at most {law.maximum_voltage / 1e3:g} kV"
+
+
+def _with_histograms(found) -> tuple[Cloud, ...]:
+    """The same clouds with histograms of how far flights are from the nominal one, all in the same bins."""
+    top = max(float(np.percentile(cloud.miss[:, -1], 99)) for cloud in found)
+    edges = np.linspace(0.0, 1.05 * max(top, 1e-9 * AU), BINS + 1)
+    done = []
+    for cloud in found:
+        place = np.minimum(np.searchsorted(edges, cloud.miss, side="right") - 1, BINS - 1)
+        counts = np.array([np.bincount(column, minlength=BINS) for column in place.T])
+        done.append(replace(cloud, histogram_edges=edges, histogram=counts / len(cloud.miss)))
+    return tuple(done)

@@ -31,8 +31,6 @@ def clouds_of(p: Plan, output) -> tuple[Cloud, ...]:
         raise SceneError([Fault("ensemble", "flies the scene's own steering and forces, no functions.")], scene.source)
     step = np.unique(np.round(np.linspace(0, output.rows - 1, min(OUTPUTS, output.rows))).astype(int))
     times = np.array([output.between(int(k), 1)[0] for k in step])
-    if times[-1] < scene.propagation.duration:  # rows that stop short of it: the clouds do as well
-        times[-1] = min(times[-1], scene.propagation.duration)
     makers = [(f"ensemble[{i}]", item, _drawn) for i, item in enumerate(scene.ensemble)]
     makers += [(f"chaos[{i}]", item, _expanded) for i, item in enumerate(scene.chaos)]
     found = []
@@ -115,6 +113,7 @@ def _drawn(p: Plan, item, place, step, times) -> Cloud:
         keep=min(flights, RECORDED),
         **options,
     )
+    ensemble = replace(ensemble, time=times)
     return _cloud(p, item, law, words, step, ensemble, "monte-carlo", more)
 
 
@@ -169,9 +168,10 @@ def _expanded(p: Plan, item, place, step, times) -> Cloud:
     found = chaos.expand(fly, drawn.shape, drawn.scale, item.order, item.basis)
     swarm = flown[0]
     spread = found.coefficients[1:, :, :6]
-    at = np.moveaxis(found.percentile(np.array(LEVELS)), 0, 0)
+    at = found.percentile(np.array(LEVELS))
     ensemble = replace(
         swarm,
+        time=times,
         mean=found.mean[:, :6],
         covariance=np.einsum("ntk,ntl->tkl", spread, spread),
         percentiles=at[..., :6],
@@ -179,7 +179,7 @@ def _expanded(p: Plan, item, place, step, times) -> Cloud:
         voltage=replace(swarm.voltage, percentiles=at[..., 7]),
         pressure=replace(swarm.pressure, percentiles=at[..., 8]),
     )
-    words = f"{drawn.name if hasattr(drawn, 'name') else 'gamma'}, {drawn.mean * 1e9:.3g} nPa, constant"
+    words = f"gamma, {drawn.mean * 1e9:.3g} nPa, constant"
     return _cloud(p, item, law, words, step, ensemble, "polynomial-chaos", {}, float(np.max(found.tail[-1, :2])))
 
 

@@ -149,4 +149,13 @@ CATALOGUE = {
         "wind",
         "gpc_convergence",
     ),
+    "arrival-dispersion": Entry(
+        "Where an electric sail ends that flew to Mars through a wind redrawn every day",
+        f"{OURS}; smoothed minimum-time steering, 522 d, a_c 1 mm/s², gamma law k = 2.593, θ = 0.7793 nPa, nominal at "
+        "its mean: E√p < √Ep, so all fall short",
+        (13, 5.8),
+        (1, 2),
+        "wind",
+        "arrival_dispersion",
+    ),
 }

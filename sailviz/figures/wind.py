@@ -5,12 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from sailviz import steering
-from sailviz.constants import AU, MU_SUN, YEAR
+from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN, YEAR
+from sailviz.design.smoothed_transfer import smoothed_transfer
 from sailviz.environment import solar_wind
-from sailviz.propagate import dop853, dynamics
+from sailviz.environment.wind_laws import Gamma
+from sailviz.propagate import control, dop853, dynamics
 from sailviz.propagate.events import watch
 from sailviz.propulsion.electric_sail import FINAL, PITCH_LIMIT
 from sailviz.uncertainty import chaos, wind
+from sailviz.uncertainty.covariance import linear
+from sailviz.uncertainty.ensembles import RandomWind, fly_ensemble, fly_factors
 
 NPA, HOUR = 1e-9, 3600.0
 LAW = wind.named("lognormal", sigma=0.6144, scale=np.exp(0.4984) * NPA)  # fitted to OMNI2, 1998-2018
@@ -143,3 +147,65 @@ def gpc_convergence(pen, left, right):
     right.set(xlabel="time [d]", ylabel="distance from the Sun [au]", xlim=(0, days[-1]))
     right.legend(loc="upper left")
     right.set_title("tube of the second from six flights")
+
+
+MARS = 1.523679, (0.6835, 0.2181, 0.6966), 8.98  # au; costates and time from which the shooting begins
+HOURLY = Gamma(2.593, 0.7793e-9)  # of OMNI2, 1998-2018
+FLIGHTS = 1000
+CONTROLS = {
+    "constant voltage": {},
+    "pressure law, 40 kV": {"kind": "pressure"},
+    "distance law, 40 kV": {"kind": "distance", "position_gain": 100.0, "speed_gain": 50.0},
+}
+
+
+def arrival_dispersion(pen, scatter, bars):
+    """Where flights to Mars end with and without voltage control; Monte Carlo against linear covariance."""
+    s, tu = pen.style, np.sqrt(AU**3 / MU_SUN)
+    transfer = smoothed_transfer(MARS[0], 1e-3 / GRAVITY_AT_1_AU, MARS[1], MARS[2], HOUR / tu)
+    steps, duration = len(transfer.pitch), transfer.time * tu
+    times = duration / steps * np.arange(steps)
+    table = steering.table(times, transfer.pitch, np.full(steps, np.pi / 2), transfer.throttle, "hold")
+    start = (AU, 0.0, 0.0), (0.0, np.sqrt(MU_SUN / AU), 0.0), duration
+    turn = np.linspace(0, 2 * np.pi, 181)
+    spreads = []
+    for (word, law), color in zip(CONTROLS.items(), (s.series[1], s.series[2], s.series[3]), strict=True):
+        row = control.row(reference_pressure=HOURLY.mean, **law)
+        gusts = RandomWind(HOURLY, "redrawn", DAY)
+        found = fly_ensemble(
+            *start, wind=gusts, control=row, flights=FLIGHTS, seed=2018, table=table, outputs=2, keep=0
+        )
+        off = found.miss[:, [1, 0, 3, 4]] / [np.pi / 180, AU / 1000, 1e3, 1e3]
+        spreads.append(off)
+        scatter.plot(off[:, 0], off[:, 1], ".", markersize=2.5, color=color, alpha=0.55, markeredgewidth=0)
+        middle, spread = off[:, :2].mean(axis=0), np.linalg.cholesky(np.cov(off[:, :2].T))
+        for sigma in (1, 2, 3):
+            ring = middle[:, None] + sigma * spread @ np.stack([np.cos(turn), np.sin(turn)])
+            scatter.plot(*ring, color=color, linewidth=1.1, alpha=1.15 - 0.25 * sigma)
+        mean, deviation = off[:, 1].mean(), off[:, 1].std(ddof=1)
+        scatter.plot([], [], "o", color=color, label=f"{word}: r {mean:+.1f} ± {deviation:.1f}")
+    scatter.plot([0], [0], "+", color=s.ink, markersize=12, markeredgewidth=1.6, label="nominal")
+    scatter.set(xlabel="ahead of the nominal flight [deg]", ylabel="farther out than nominal [10⁻³ au]")
+    scatter.legend(loc="upper right")
+    scatter.set_title(f"{FLIGHTS} flights each, with 1, 2 and 3 σ")
+
+    intervals = int(np.ceil(duration / DAY))
+    law = HOURLY.reference_pressure(True) / HOURLY.mean  # (E sqrt p)^2 / E p
+    mean, deviation = np.sqrt(law), np.sqrt(1 - law)
+    ends = linear(lambda f: fly_factors(f, DAY, *start, table=table)[:, [1, 0, 3, 4]], intervals, mean, deviation)
+    expected = ends.standard_deviation / [np.pi / 180, AU / 1000, 1e3, 1e3]
+    drawn = spreads[0].std(axis=0, ddof=1)
+    names = ("azimuth\n[deg]", "distance\n[10⁻³ au]", "speed out\n[km/s]", "speed across\n[km/s]")
+    place = np.arange(4)
+    share = drawn / expected
+    bars.bar(place - 0.2, np.ones(4), 0.36, color=s.series[0], label="linear covariance")
+    bars.bar(place + 0.2, share, 0.36, color=s.series[1], label=f"{FLIGHTS} flights, ± 2 standard errors")
+    error = 2 * share / np.sqrt(2 * (FLIGHTS - 1))
+    bars.errorbar(place + 0.2, share, error, fmt="none", ecolor=s.ink, elinewidth=1.2, capsize=4)
+    for k in range(4):
+        pen.label(bars, place[k] - 0.2, 0.5, f"{expected[k]:.3g}")
+        pen.label(bars, place[k] + 0.2, 0.5, f"{drawn[k]:.3g}")
+    bars.set_xticks(place, names)
+    bars.set(ylabel="standard deviation over the linear one", ylim=(0, 1.45))
+    bars.legend(loc="upper center", ncols=2)
+    bars.set_title("constant voltage: spread from sensitivities and from flights")

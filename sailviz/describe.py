@@ -87,7 +87,7 @@ def parameters_in_words(scene, design, strength) -> list[tuple[str, str]]:
             ("mean pressure", f"{wind.shape * wind.scale * 1e9:.4g} nPa"),
             ("redrawn every", duration(wind.redraw)),
         ]
-    for item in scene.expect[:3]:
+    for item in [item for item in scene.expect if item.ensemble is None][:3]:
         when = item.at if item.at is not None else duration(item.at_time)
         rows += [(f"expected {item.quantity} ({when})", f"{item.value:.7g}")]
     return rows

@@ -26,6 +26,7 @@ PIECE = 3  # rows of a cloud in one piece of its paths
 RING = 49  # points of an ellipse
 SIGMAS = (1.0, 2.0, 3.0)
 BOX = 1.0, 0.5  # half width and half height of the plane of arrival, in which its axes are stretched to fit
+NARROW = 1e-6  # rad: the least that a plane of arrival is wide
 BENT = 0.8  # rad that an ellipse may reach along the orbit to be drawn in space
 TUBE_ALPHA = 16
 ROOM = 0.08  # of the range, round what must be seen in the plane of arrival
@@ -158,7 +159,8 @@ class Clouds:
         pen.strip_style("/world/nominal/path", look.NOMINAL, look.WIDTH["nominal"])
         starts = np.arange(0, len(line) - 1, PIECE)
         ends = np.minimum(starts + PIECE, len(line) - 1)
-        strips = [[line[a : b + 1]] for a, b in zip(starts, ends, strict=True)]
+        beside = 1.004 * line  # a line on the craft's own trail would tear
+        strips = [[beside[a : b + 1]] for a, b in zip(starts, ends, strict=True)]
         pen.broken_strips("/world/nominal/path", self._index(cloud, ends), strips)
         pen.static("/world/nominal/place", rr.Points3D.from_fields(radii=points(3.4), colors=[look.NOMINAL]))
         pen.columns("/world/nominal/place", self._index(cloud), rr.Points3D.columns(positions=f4(line)))
@@ -242,7 +244,8 @@ class Clouds:
         origin = arrival.place(0.0, 0.0)
         lines = [arrival.place(np.array(arrival.ahead), 0.0), arrival.place(0.0, np.array(arrival.out))]
         places, names = [], []
-        for number in ticks(np.degrees(arrival.ahead)):
+        spread_out = arrival.ahead[1] - arrival.ahead[0] > 2 * NARROW  # flights that stand still have one azimuth
+        for number in ticks(np.degrees(arrival.ahead)) if spread_out else ():
             at = arrival.place(np.radians(number), 0.0)
             lines.append(np.array([[0.0, -0.012], [0.0, 0.012]]) + at)
             places.append(np.array([0.0, 0.02]) + at)
@@ -256,7 +259,7 @@ class Clouds:
         style = {"radii": points(look.ANCHOR), "colors": [look.REFERENCE], "labels": names, "show_labels": True}
         pen.static(f"{path}/numbers", rr.Points2D(f4(places), **style))
         top = arrival.place(0.0, arrival.out[1])
-        words = [np.array([0.0, -0.09]) + top, [BOX[0] - 0.22, origin[1] - 0.10]]
+        words = [[max(top[0], 0.3 - BOX[0]), top[1] - 0.09], [BOX[0] - 0.22, origin[1] - 0.10]]
         style |= {"labels": ["farther out [10⁻³ au]", "ahead"]}
         pen.static(f"{path}/names", rr.Points2D(f4(words), **style))
         pen.static(f"{path}/nominal", rr.Points2D([f4(origin)], radii=points(3.0), colors=[look.NOMINAL]))
@@ -309,7 +312,7 @@ def arrivals_of(setting: Setting) -> tuple[Arrival, ...]:
         wide = 3.0 * np.sqrt(np.maximum(np.diagonal(cloud.covariance, axis1=1, axis2=2)[:, :2], 0.0))
         reach.append([np.minimum((off - wide).min(axis=0), 0.0), np.maximum((off + wide).max(axis=0), 0.0)])
     reach = np.array(reach)  # (clouds, 2, 2)
-    least = np.array([1.0, 1e-9])  # m, rad: clouds may have no spread at all
+    least = np.array([1.0, NARROW])  # m, rad: clouds may have no spread at all
     size = np.maximum(reach[:, 1] - reach[:, 0], least)
     narrow = int(np.argmin(size[:, 0]))
 
@@ -401,6 +404,8 @@ def legend(setting: Setting) -> list[str]:
 
 def spread(mean: float, deviation: float) -> str:
     """Mean ± deviation, the deviation with two digits and the mean as exactly."""
+    if max(abs(mean), abs(deviation)) < 1e-6:
+        return "0"
     size = max(abs(deviation), 1e-3 * abs(mean), 1e-12)
     digits = int(np.clip(1 - np.floor(np.log10(size)), 0, 6))
     return f"{mean:+.{digits}f} ± {deviation:.{digits}f}".replace("-", "−")

@@ -223,6 +223,7 @@ def test_a_brake_without_a_battery_rests_in_the_shadow(shadow):
     lit, force = run.environment["sunlit"], run.environment["plasma_force_N_m"]
     assert 1 - lit.mean() == pytest.approx(circular_fraction(7078137.0, RADIUS_EARTH), abs=2e-3)
     assert not force[~lit].any()
+    assert not run.environment["tether_current_A"][~lit].any()
     assert force[lit].min() > 0
     assert not run.thrust.magnitude[~lit].any()
 

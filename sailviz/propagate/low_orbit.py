@@ -198,7 +198,7 @@ def observe_low_orbit(time, states, factor, p):
                 speed = np.sqrt(qx * qx + qy * qy + qz * qz)
                 out[FORCE, i], out[VOLTAGE, i] = factor[i] * force, voltage
                 out[TILT, i] = np.arccos(min(1.0, (x * sx + y * sy + z * sz) / r))
-                if p[at.PLASMA] != plasma.FORCE_PROFILE:
+                if p[at.PLASMA] != plasma.FORCE_PROFILE and voltage > 0.0:
                     current = tether_current(
                         density, mass, speed, voltage, p[at.LENGTH], p[at.WIRE_DIAMETER], p[at.POLARITY]
                     )

@@ -28,6 +28,8 @@ class Pose:
 POSES = {  # chosen by eye; a scene that is not here is shown as `Pose()` says, one round a planet with "Follow"
     "deorbit/cubesat": Pose("Follow", 0.35),
     "deorbit/debris-260kg": Pose("Earth", 0.5),
+    "deorbit/gravity-gradient": Pose("Tether close-up", 0.4),
+    "deorbit/satellite-100kg": Pose("", 0.5),
     "displaced/circular": Pose("", 0.7),
     "displaced/earth-type-ii-elliptic": Pose("System", 0.35),
     "displaced/ecliptic": Pose("System", 0.2),
@@ -45,6 +47,9 @@ POSES = {  # chosen by eye; a scene that is not here is shown as `Pose()` says, 
     "spirals/optical-sail": Pose("Follow", 0.35),
     "spirals/radial-escape": Pose("Follow", 0.7),
     "spirals/tangential-escape": Pose("Follow", 0.7),
+    "transfers/earth-mars-jpl-2015": Pose("", 0.6),
+    "transfers/solar-polar": Pose("System", 0.95),
+    "wind/mars": Pose("", 0.9),
     "wind/transfer-arc": Pose("Follow", 0.35),
 }
 

@@ -11,6 +11,7 @@ from sailviz.propagate.ensemble_draws import GIVEN
 SAME = 1e-10  # of the duration: times closer than this are one
 STEP = 0.02  # first guess of a step, in units of sqrt(r^3 / mu): 1.2 days at 1 au
 MOST_REFINEMENTS = 8
+MOST_STEPS = 300_000  # of one flight: more are asked for only where flights dive towards the centre
 
 
 def marks(interval, duration):
@@ -122,6 +123,9 @@ def refined(plan: Plan, wind: Wind, control, tolerance, aim=None):
             return plan, error
         more = (error / (0.5 * tolerance)) ** 0.25 if np.isfinite(error) else 4.0
         plan = plan._replace(substeps=plan.substeps * int(min(max(2, np.ceil(more)), 8)))
+        if plan.substeps.sum() > MOST_STEPS:
+            break
     raise ValueError(
-        f"no step brings the flights within {tolerance:g} of their distance; the last try erred by {error:.2g}"
+        f"no step brings the flights within {tolerance:g} of their distance; the last try erred by {error:.2g}: "
+        "some flights dive towards the centre"
     )

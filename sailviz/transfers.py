@@ -319,7 +319,7 @@ def _expectations(reached, position, velocity, within, met):
     tilt = float(reached.inclination)
     if tilt > 1e-9:
         wanted["inclination_deg"] = (np.degrees(tilt), np.degrees(within))
-    if tilt > LEAST_TILT:
+    if tilt > LEAST_TILT and abs(np.sin(reached.raan / 2)) > 1e-6:  # a node at 0 would be measured as 0 or as 360
         wanted["raan_deg"] = (np.degrees(reached.raan), np.degrees(within) / np.sin(tilt))
     if met:
         longitude = np.unwrap(np.arctan2(position[:, 1], position[:, 0]))

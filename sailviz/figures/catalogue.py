@@ -158,4 +158,37 @@ CATALOGUE = {
         "wind",
         "arrival_dispersion",
     ),
+    "flight-time": Entry(
+        "How fast a sail gets there: minimum-time transfers from the Earth's orbit",
+        f"{OURS}; between circles in one plane, best found without a guess; gaps: none was found",
+        (15, 4.8),
+        (1, 4),
+        "transfers",
+        "flight_time",
+    ),
+    "steering-laws": Entry(
+        "Steering for the most thrust along a wanted direction, and what simpler laws lose",
+        f"{OURS}; exact laws re-derived; up to where the film goes edge-on",
+        (14, 5.2),
+        (1, 3),
+        "transfers",
+        "steering_laws",
+    ),
+    "films": Entry(
+        "Films and electric-sail models compared: minimum-time transfers at 1 mm/s²",
+        f"{OURS}; from the Earth's orbit, between circles, best found; cone angles: updated and original model to 30°, "
+        "the other two to 19.5° and 19.8°",
+        (13, 4.6),
+        (1, 3),
+        "transfers",
+        "films",
+    ),
+    "launch-window": Entry(
+        "When to leave for a rendezvous: ideal sail of 1 mm/s², planets where they are",
+        f"{OURS}; mean elements, the planets' pull neglected; upper bounds; dotted: edge-on until a better day",
+        (12, 5.2),
+        (1, 2),
+        "transfers",
+        "launch_window",
+    ),
 }

@@ -1,0 +1,125 @@
+"""Figures of minimum-time transfers: flight times, steering laws, films and E-sail models, launch windows."""
+
+from __future__ import annotations
+
+import numpy as np
+from matplotlib.dates import DateFormatter, MonthLocator
+
+from sailviz.figures import transfer_data
+from sailviz.figures.transfer_data import COMPARED, OVER_ACCELERATION, TARGETS
+from sailviz.optimal_steering import analytic_pitch, optimal_pitch
+from sailviz.propulsion.solar_sail import FILMS
+
+WORDS = {
+    "ideal": "ideal film",
+    "jpl-2015": "JPL-2015",
+    "jpl-1978": "JPL-1978",
+    "electric-sail": "E-sail",
+    "electric-sail-updated": "E-sail, updated",
+    "electric-sail-polynomial": "E-sail, polynomial",
+    "electric-sail-original": "E-sail, original",
+}
+DASHED, DOTTED = (0, (4, 2.5)), (0, (1, 2))
+
+
+def flight_time(pen, *panels):
+    """Flight time over the characteristic acceleration, one panel per target."""
+    found = transfer_data.flight_times()
+    for panel, target in zip(panels, TARGETS, strict=True):
+        for device, color in zip(OVER_ACCELERATION, pen.style.series, strict=False):
+            a_c, days, _ = found[target, device].T
+            known = np.isfinite(days)
+            panel.plot(a_c[known], days[known], color=color, marker="o", markersize=4, label=WORDS[device])
+        panel.set(xscale="log", yscale="log", xlabel="characteristic acceleration [mm/s²]")
+        panel.set_xticks([0.25, 0.5, 1, 2], ["0.25", "0.5", "1", "2"])
+        panel.set_xticks([], minor=True)
+        ticks = [t for t in (150, 200, 300, 500, 1000, 2000, 4000) if panel.get_ylim()[0] < t < panel.get_ylim()[1]]
+        panel.set_yticks(ticks, [f"{t}" for t in ticks])
+        panel.set_yticks([], minor=True)
+        panel.set_title(f"to {target.capitalize()}")
+    panels[0].set_ylabel("flight time [d]")
+    panels[0].legend(loc="upper right")
+
+
+def steering_laws(pen, pitches, errors, losses):
+    """Optimal pitch over the primer angle; error and loss of flying simpler laws with a real film."""
+    s = pen.style
+    degrees = np.linspace(0, 180, 1801)
+    angle = np.radians(degrees)
+    for device, color in zip(("ideal", "jpl-2015", "electric-sail"), s.series, strict=False):
+        law = optimal_pitch(angle, device)
+        pitches.plot(degrees, np.where(law.on, np.degrees(law.pitch), np.nan), color=color, label=WORDS[device])
+        off = degrees[~law.on]
+        if len(off) and device == "jpl-2015":
+            edge = np.degrees(law.pitch[law.on][-1])
+            pitches.plot([off[0], off[0], 180], [edge, 90, 90], color=color, linestyle=DOTTED, linewidth=1.4)
+    pitches.set(xlabel="angle of the primer from the Sun line [°]", ylabel="pitch [°]", xlim=(0, 180), ylim=(0, 95))
+    pitches.set_xticks([0, 45, 90, 135, 180])
+    pitches.legend(loc="upper left")
+    pitches.set_title("the pitch of the most thrust; dotted: off")
+
+    for name, color in zip(("jpl-2015", "jpl-1978"), s.series[1:3], strict=True):
+        best = optimal_pitch(angle, name)
+        analytic = analytic_pitch(angle, name)
+        ideal = optimal_pitch(angle, "ideal").pitch
+        on = best.on & analytic.on
+        for pitch, line, law in ((ideal, DASHED, "ideal law"), (np.asarray(analytic), "-", "analytic law")):
+            away = np.degrees(np.abs(pitch - best.pitch))
+            errors.plot(degrees, np.where(on, np.maximum(away, 1e-5), np.nan), color=color, linestyle=line)
+            loss = 1 - _along(FILMS[name], pitch, angle) / np.where(on, best.support, np.nan)
+            losses.plot(degrees, np.maximum(loss, 1e-9), color=color, linestyle=line, label=f"{name.upper()}, {law}")
+    ends = {"xlabel": "angle of the primer from the Sun line [°]", "xlim": (0, 150), "yscale": "log"}
+    errors.set(ylabel="error of the pitch [°]", ylim=(1e-4, 20), **ends)
+    errors.set_title("how far simpler laws are off")
+    losses.set(ylabel="share of the thrust along the primer", ylim=(1e-9, 1), **ends)
+    losses.legend(loc="upper left", fontsize=8.5)
+    losses.set_title("and what that costs at the moment")
+    for panel in (errors, losses):
+        panel.set_xticks([0, 45, 90, 135])
+
+
+def _along(film, pitch, angle):
+    """Thrust along a primer as a share of the full one: (3.21)."""
+    c = np.cos(pitch)
+    along = c * film.b1 * np.cos(angle) + c * (film.b2 * c + film.b3) * np.cos(angle - pitch)
+    return along / film.total
+
+
+def films(pen, *panels):
+    """Flight times at 1 mm/s2 with every film and E-sail model, one panel per target."""
+    found = transfer_data.flight_times()
+    for panel, target in zip(panels, TARGETS[:3], strict=True):
+        days = []
+        for device in COMPARED:
+            rows = found[target, device]
+            days.append(float(rows[np.isclose(rows[:, 0], 1.0), 1][0]))
+        place = np.arange(len(COMPARED))[::-1]
+        colors = [pen.style.series[2 if device.startswith("electric") else 0] for device in COMPARED]
+        panel.barh(place, days, color=colors, height=0.62)
+        for y, value in zip(place, days, strict=True):
+            word = f"{value:.1f} d" if np.isfinite(value) else "none found"
+            panel.text(np.nan_to_num(value), y, f" {word}", color=pen.style.ink, va="center", fontsize=9)
+        panel.set_yticks(place, [WORDS[device] for device in COMPARED] if panel is panels[0] else [""] * len(place))
+        panel.set(xlabel="flight time [d]", xlim=(0, 1.28 * np.nanmax(days)))
+        panel.grid(visible=False, axis="y")
+        panel.set_title(f"to {target.capitalize()}")
+
+
+def launch_window(pen, *panels):
+    """Flight time over the date of departure, one panel per planet."""
+    for panel, (target, (dates, days)), color in zip(
+        panels, transfer_data.launch_windows().items(), pen.style.series, strict=False
+    ):
+        panel.plot(dates, days, color=color, marker="o", markersize=3)
+        later = (dates[None, :] - dates[:, None]) / np.timedelta64(1, "D")
+        waited = np.nanmin(np.where(later >= 0, later + days[None, :], np.nan), axis=1)
+        panel.plot(dates, waited, color=pen.style.ink, linestyle=DOTTED, linewidth=1.4, label="waiting included")
+        best = int(np.nanargmin(days))
+        panel.plot(dates[best], days[best], marker="o", color=pen.style.ink)
+        words = f"{np.datetime_as_string(dates[best], 'D')}: {days[best]:.1f} d"
+        panel.annotate(words, (dates[best], days[best]), (0, -14), textcoords="offset points", ha="center", fontsize=9)
+        panel.set(ylabel="flight time [d]", xlabel="departure", ylim=(0.8 * days[best], 1.05 * np.nanmax(days)))
+        panel.set_title(f"to {target.capitalize()}")
+        panel.xaxis.set_major_locator(MonthLocator(bymonth=1))
+        panel.xaxis.set_major_formatter(DateFormatter("%Y"))
+    panels[0].legend(loc="lower left")

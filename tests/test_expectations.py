@@ -111,3 +111,10 @@ def test_a_tolerance_in_percent_is_of_the_value():
     assert verdict.tolerance == pytest.approx(0.014157)
     assert verdict.passed
     assert not other.passed
+
+
+def test_every_quantity_has_a_dimension_and_a_value():
+    from sailviz.quantities import DIMENSIONS
+    from sailviz.quantity_values import VALUES
+
+    assert list(DIMENSIONS) == list(VALUES)

@@ -1,0 +1,100 @@
+"""What each quantity of quantities.py is: a function of a Run giving one value per row, in SI."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from sailviz.run import Run
+
+
+def _distance(run: Run):
+    return np.linalg.norm(run.position, axis=1)
+
+
+def _energy(run: Run):
+    return np.sum(run.velocity**2, axis=1) / 2 - run.setting.body.mu / _distance(run)
+
+
+def _momentum(run: Run):
+    return np.linalg.norm(np.cross(run.position, run.velocity), axis=1)
+
+
+def _flight_path(run: Run):
+    radial = np.sum(run.position * run.velocity, axis=1) / _distance(run)
+    return np.arctan2(radial, _momentum(run) / _distance(run))
+
+
+def _longitude(run: Run):
+    """Unwrapped, so that it counts revolutions; from the first row of the run or block."""
+    return np.unwrap(np.arctan2(run.position[:, 1], run.position[:, 0]))
+
+
+def _closed_form_error(run: Run):
+    raise TypeError("the error against a closed form takes the closed form too: expectations.py knows it")
+
+
+def _above_surface(distance):
+    """Of a length from the centre as a function of the elements, its height over the central body's radius."""
+    return lambda run: distance(run.elements) - run.setting.body.radius
+
+
+def _acted(name: str):
+    """A column of the environment; NaN, which no expectation accepts, where the run has none."""
+    return lambda run: np.asarray(run.environment.get(name, np.full(len(run), np.nan)), float)
+
+
+def _mean_altitude(run: Run):
+    """Without the swing that an oblate planet gives it, where the run knows that; else of the semi-major axis."""
+    return run.environment.get("mean_altitude_m", run.elements.semi_major_axis - run.setting.body.radius)
+
+
+def _radial_speed(run: Run):
+    return np.sum(run.position * run.velocity, axis=1) / _distance(run)
+
+
+VALUES = {
+    "time": lambda run: run.time,
+    "radius": _distance,
+    "altitude": lambda run: _distance(run) - run.setting.body.radius,
+    "elevation": lambda run: np.arctan2(run.position[:, 2], np.hypot(run.position[:, 0], run.position[:, 1])),
+    "height": lambda run: run.position[:, 2],
+    "longitude": _longitude,
+    "speed": lambda run: np.linalg.norm(run.velocity, axis=1),
+    "radial_speed": _radial_speed,
+    "transverse_speed": lambda run: _momentum(run) / _distance(run),
+    "flight_path_angle": _flight_path,
+    "energy": _energy,
+    "angular_momentum": _momentum,
+    "angular_momentum_z": lambda run: np.cross(run.position, run.velocity)[:, 2],
+    "mass": lambda run: run.mass,
+    "semi_major_axis": lambda run: run.elements.semi_major_axis,
+    "eccentricity": lambda run: run.elements.eccentricity,
+    "inclination": lambda run: run.elements.inclination,
+    "raan": lambda run: run.elements.raan,
+    "true_anomaly": lambda run: run.elements.true_anomaly,
+    "periapsis": lambda run: run.elements.semi_major_axis * (1 - run.elements.eccentricity),
+    "apoapsis": lambda run: run.elements.semi_major_axis * (1 + run.elements.eccentricity),
+    "pitch": lambda run: run.attitude.pitch,
+    "cone": lambda run: run.attitude.cone,
+    "clock": lambda run: run.attitude.clock,
+    "thrust_acceleration": lambda run: run.thrust.magnitude,
+    "closed_form_error": _closed_form_error,
+    "perigee_altitude": _above_surface(lambda e: e.semi_major_axis * (1 - e.eccentricity)),
+    "mean_altitude": _mean_altitude,
+    "apogee_altitude": _above_surface(lambda e: e.semi_major_axis * (1 + e.eccentricity)),
+    "quasi_circular_altitude": _acted("quasi_circular_altitude_m"),
+    "sunlit": _acted("sunlit"),  # its mean is the share of the time
+    "force_law_valid": _acted("force_law_valid"),
+    "plasma_force": _acted("plasma_force_N_m"),
+    "plasma_density": _acted("plasma_density_per_m3"),
+    "tether_current": _acted("tether_current_A"),
+    "tether_voltage": _acted("tether_voltage_V"),
+    "tether_power": _acted("tether_power_W"),
+    "tether_tilt": _acted("tether_tilt_rad"),
+    "air_drag": _acted("air_drag_N"),
+    "thrust_factor": lambda run: run.environment.get("thrust_factor", np.ones(len(run))),
+    "thrust_voltage": _acted("thrust_voltage_V"),
+    "wind_pressure": _acted("solar_wind_pressure_Pa"),
+    "electrochromic_state": _acted("electrochromic_state"),
+    "saturated": _acted("saturated"),  # of an ensemble: the share of time at the largest voltage
+}

@@ -32,6 +32,7 @@ from sailviz.plan_low_orbit import brake_device, low_orbit_parts
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate import events as happening
 from sailviz.propagate.choice import Choice, choose
+from sailviz.propagate.control_plug import R_REF, U_REF, WANTED, factor_plug
 from sailviz.propagate.plugs import user_address
 from sailviz.propulsion import electric_sail
 from sailviz.propulsion.devices import sail
@@ -108,7 +109,7 @@ def plan(scene: Scene, steering=None, force=None) -> Plan:
     )
 
     def nominal(times):
-        on = when.lines[:, 6]
+        on = when.lines[:, WANTED]
         return _flight(dynamics.model(body.mu, **parts), position, velocity, when.breaks, on, times)
 
     model = dynamics.model(body.mu, **parts, **_controlled(scene, when, nominal))
@@ -440,8 +441,6 @@ def _controlled(scene, when: Schedule, nominal):
     without wind, times (k,) -> states (6, k)."""
     if when.law is None:
         return {}
-    from sailviz.propagate.control_plug import R_REF, U_REF, factor_plug
-
     lines = when.lines.copy()
     if scene.start.kind in ("displaced", "heliostationary", "lagrange-point"):
         lines[:, R_REF] = scene.start.radius

@@ -13,6 +13,7 @@ from sailviz.constants import SOLAR_IRRADIANCE, WIND_POTENTIAL, WIND_PRESSURE
 from sailviz.environment import irradiance, solar_wind, wind_laws
 from sailviz.errors import Fault, SceneError
 from sailviz.propagate import control
+from sailviz.propagate import control_plug as knows
 
 NOMINAL_VOLTAGE = 20e3  # V, of an electric sail that does not say its own
 
@@ -56,9 +57,10 @@ def schedule(scene, table) -> Schedule:
     histories = {name: values[now] for name, values in weather.columns.items()}
     if law is None or law.kind == "electrochromic":
         return Schedule(breaks, weather.factors[now] * on, switches, histories)
-    lines = np.zeros((len(breaks), 8))
-    lines[:, 0], lines[:, 1], lines[:, 2] = weather.pressure[now], weather.density[now], weather.potential[now]
-    lines[:, 5], lines[:, 6] = np.isin(breaks, updates), on
+    lines = np.zeros((len(breaks), knows.COLUMNS))
+    lines[:, knows.PRESSURE], lines[:, knows.DENSITY] = weather.pressure[now], weather.density[now]
+    lines[:, knows.POTENTIAL], lines[:, knows.UPDATE] = weather.potential[now], np.isin(breaks, updates)
+    lines[:, knows.WANTED] = on
     return Schedule(breaks, on.astype(float), switches, histories, lines, control_row(law, scene, weather.reference))
 
 

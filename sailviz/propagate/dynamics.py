@@ -36,6 +36,7 @@ from sailviz.propagate.row import (
     PLASMA_TABLE,
     PRIMER_KIND,
     PRIMER_LAW,
+    PRIMER_MU,
     ROTATION,
     ROWS,
     SHADOW,
@@ -109,7 +110,7 @@ def model(
         row[start : start + len(values)] = values
     row[USER_STEERING], row[USER_FORCE], row[INTERPOLATION] = user_steering, user_force, interpolation
     row[SHADOW], row[HEIGHT], row[LOW_ORBIT] = shadow, height, low_orbit
-    row[PRIMER_LAW], row[PRIMER_KIND], row[CONTROL] = primer_law, primer_kind, control
+    row[PRIMER_LAW], row[PRIMER_KIND], row[PRIMER_MU], row[CONTROL] = primer_law, primer_kind, mu, control
     if table is not None:
         row[ROWS] = len(table)
         row = np.concatenate([row, np.asarray(table, dtype=float).ravel()])

@@ -58,6 +58,7 @@ from sailviz.propagate.integration import (
     Integration,
     W,
     Y,
+    factor_from,
     fill,
     happenings,
     surface_met,
@@ -387,6 +388,7 @@ def advance_compiled(
         count[STARTED] = 1
         while count[INTERVAL] + 1 < len(breaks) and breaks[count[INTERVAL] + 1] <= clock[TIME]:
             count[INTERVAL] += 1
+        factor_from(clock[TIME], y, factors, count[INTERVAL], model)
         derivative(clock[TIME], y, factors[count[INTERVAL]], model, k[0])
         clock[STEP] = _rule(y, k[0], mu, grid[REFINEMENT], largest_step)[1]
         for e in range(watched):
@@ -490,7 +492,7 @@ def advance_compiled(
         new_factor = factor
         if t == limit and limit < t_end and interval + 1 < len(breaks):
             interval += 1
-            new_factor = factors[interval]
+            new_factor = factor_from(t, new, factors, interval, model)
         new_factor = new_factor * count[IN_USE]
         if stop_x < 2.0 or new_factor != factor or (t == limit and limit < t_end):
             factor = new_factor

@@ -22,11 +22,11 @@ def primer(t, x, y, z, vx, vy, vz, p):
     """The vector along which the law wants the most thrust, of any length; inertial."""
     kind = p[at.PRIMER_KIND]
     if kind == law.LOCAL:
-        lx, ly, lz = locally_optimal_primer(int(p[at.STEERING]), x, y, z, vx, vy, vz, p[at.MU])
+        lx, ly, lz = locally_optimal_primer(int(p[at.STEERING]), x, y, z, vx, vy, vz, p[at.PRIMER_MU])
         sense = p[at.STEERING + 1]
         return sense * lx, sense * ly, sense * lz
     if kind == law.LYAPUNOV:
-        return lyapunov_primer(x, y, z, vx, vy, vz, p[at.MU], p, at.TABLE)
+        return lyapunov_primer(x, y, z, vx, vy, vz, p[at.PRIMER_MU], p, at.TABLE)
     return law.table_row(t, p, at.TABLE, int(p[at.ROWS]), p[at.INTERPOLATION])
 
 

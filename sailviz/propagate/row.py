@@ -26,6 +26,7 @@ STEER_AS = 64  # the sail for which a primer law steers: its kind, then up to fo
 PRIMER_KIND = 69  # which law of steering.py makes the primer
 LOW_ORBIT, PRIMER_LAW = 70, 71  # addresses of plugs, 0 for none: the forces of low_orbit.py, primer_laws.py
 CONTROL, CONTROL_TABLE, CONTROL_LAW = 72, 73, 74  # plug of the voltage control, and where its table and law begin
+PRIMER_MU = 75  # m3/s2, for the laws that know the orbit
 TABLE = 80
 
 NO_AIR, EXPONENTIAL_AIR, TABLED_AIR = range(3)

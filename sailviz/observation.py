@@ -75,7 +75,7 @@ def _brake_columns(scene, values, velocity):
     columns |= {
         "plasma_density_per_m3": density,
         "mean_ion_mass_u": ion_mass / ATOMIC_MASS,
-        "tether_voltage_V": voltage if scene.device.polarity == "positive" else -voltage,
+        "tether_voltage_V": voltage if scene.device.polarity == "positive" else 0.0 - voltage,  # never -0
         "tether_current_A": values[seen.CURRENT],
         "tether_power_W": values[seen.POWER],
     }

@@ -14,12 +14,11 @@ _OPTIONS = {"error_model": "numpy", "fastmath": {"contract", "nsz"}, "nogil": Tr
 
 
 _PACKAGE = Path(__file__).parent
-_WITH_COMPILED_CODE = ("compiled.py", "constants.py", "steering.py", "optimal_steering.py", "primers.py", "*/[!_]*.py")
+_ROOMS = ("design", "environment", "propagate", "propulsion", "simulation", "steering", "uncertainty")  # that compile
 _SOURCES = tuple(
-    (path.name, path.stat().st_mtime_ns, path.stat().st_size)
-    for pattern in _WITH_COMPILED_CODE
-    for path in sorted(_PACKAGE.glob(pattern))
-    if path.parent.name not in ("recording", "figures")
+    (path.relative_to(_PACKAGE).as_posix(), path.stat().st_mtime_ns, path.stat().st_size)
+    for path in sorted(_PACKAGE.rglob("*.py"))
+    if path.parent == _PACKAGE or path.relative_to(_PACKAGE).parts[0] in _ROOMS
 )
 
 

@@ -9,13 +9,7 @@ from pathlib import Path
 
 import click
 
-from sailviz.cli_shared import (
-    collecting_failures,
-    progress_bar,
-    say_if_compiling,
-    set_option,
-    values_of,
-)
+from sailviz.cli_shared import collecting_failures, progress_bar, say_if_compiling, set_option, values_of
 from sailviz.errors import RecordingError
 
 VIEW_FAILED = 1

@@ -119,7 +119,7 @@ def _drawn(p: Plan, item, place, step, times) -> Cloud:
 
 def _sunshine(p: Plan, item, law, times):
     """(wind, seed, control row, words, more quantities) of a solar sail under many Suns, with its own control."""
-    from sailviz.propagate import control
+    from sailviz.propulsion import voltage_control as control
     from sailviz.uncertainty.ensembles import GivenWind
 
     scene, light = p.scene, p.scene.environment.irradiance
@@ -244,7 +244,7 @@ def _cloud(p: Plan, item, law, wind, step, swarm, method, more, tail=0.0) -> Clo
 
 def _limits(law, swarm) -> dict[str, float]:
     """What bounds the voltage, V and Pa."""
-    from sailviz.propagate import control
+    from sailviz.propulsion import voltage_control as control
 
     row = swarm.control
     found = {"nominal_voltage_V": float(row[control.NOMINAL]), "reference_pressure_Pa": swarm.reference_pressure}

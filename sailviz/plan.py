@@ -14,16 +14,7 @@ import numpy as np
 from sailviz import elements as orbital
 from sailviz import ephemeris, frames, primers
 from sailviz import steering as law
-from sailviz.constants import (
-    AU,
-    DAY,
-    J2_EARTH,
-    MU_EARTH,
-    MU_SUN,
-    RADIUS_EARTH,
-    RADIUS_SUN,
-    STANDARD_GRAVITY,
-)
+from sailviz.constants import AU, DAY, J2_EARTH, MU_EARTH, MU_SUN, RADIUS_EARTH, RADIUS_SUN, STANDARD_GRAVITY
 from sailviz.design import displaced, spirals
 from sailviz.design.holding import Track
 from sailviz.environment.sun import sun_parameters

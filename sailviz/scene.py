@@ -20,22 +20,7 @@ from pydantic_core import ValidationError
 from sailviz.errors import SceneError
 from sailviz.scene_conflicts import conflicts
 from sailviz.scene_faults import convert, faults_of, locate, nearest
-from sailviz.scene_sections import (
-    Approximation,
-    Chaos,
-    CustomBody,
-    Devices,
-    Ensemble,
-    Environment,
-    Expectation,
-    Propagation,
-    Recording,
-    Section,
-    Start,
-    Steering,
-    Target,
-    Watched,
-)
+from sailviz.scene_sections import Approximation, Chaos, CustomBody, Devices, Ensemble, Environment, Expectation, Propagation, Recording, Section, Start, Steering, Target, Watched
 from sailviz.shipped import shipped_scenes
 
 

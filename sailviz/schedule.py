@@ -12,7 +12,7 @@ import numpy as np
 from sailviz.constants import SOLAR_IRRADIANCE, WIND_POTENTIAL, WIND_PRESSURE
 from sailviz.environment import irradiance, solar_wind, wind_laws
 from sailviz.errors import Fault, SceneError
-from sailviz.propagate import control
+from sailviz.propulsion import voltage_control as control
 from sailviz.propagate import control_plug as knows
 
 NOMINAL_VOLTAGE = 20e3  # V, of an electric sail that does not say its own

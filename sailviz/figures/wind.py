@@ -9,7 +9,8 @@ from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN, YEAR
 from sailviz.design.smoothed_transfer import smoothed_transfer
 from sailviz.environment import solar_wind
 from sailviz.environment.wind_laws import Gamma
-from sailviz.propagate import control, dop853, dynamics
+from sailviz.propulsion import voltage_control as control
+from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
 from sailviz.propulsion.electric_sail import FINAL, PITCH_LIMIT
 from sailviz.uncertainty import chaos, wind

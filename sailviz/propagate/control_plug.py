@@ -9,7 +9,7 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from sailviz.propagate import control
+from sailviz.propulsion import voltage_control as control
 from sailviz.propagate import row as at
 from sailviz.propagate.plugs import plug_address
 

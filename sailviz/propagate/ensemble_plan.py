@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.propagate import control as law
+from sailviz.propulsion import voltage_control as law
 from sailviz.propagate.ensemble import HEIGHT, LANES, RHO, THETA, Plan, U, W, Wind, record_flights
 from sailviz.propagate.ensemble_draws import GIVEN
 

@@ -15,16 +15,8 @@ from sailviz import steering as laws
 from sailviz.constants import AU, DAY, MU_SUN, YEAR
 from sailviz.environment.solar_wind import CORRELATION_TIME, KINDS
 from sailviz.environment.wind_laws import Law
-from sailviz.propagate import control as voltage
-from sailviz.propagate.ensemble import (
-    LINEAR,
-    ROOT,
-    SEEN,
-    Wind,
-    covariance,
-    fly,
-    percentiles,
-)
+from sailviz.propulsion import voltage_control as voltage
+from sailviz.propagate.ensemble import LINEAR, ROOT, SEEN, Wind, covariance, fly, percentiles
 from sailviz.propagate.ensemble_draws import DRAWN, GIVEN, REPLAYED
 from sailviz.propagate.ensemble_motion import MERIDIAN, ORBITAL, PLANE
 from sailviz.propagate.ensemble_plan import nominal, refined, segments

@@ -18,7 +18,8 @@ import pytest
 from sailviz import steering as law
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN
 from sailviz.environment.wind_laws import Gamma
-from sailviz.propagate import control, dop853, dynamics
+from sailviz.propulsion import voltage_control as control
+from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
 from sailviz.uncertainty.ensembles import RandomWind, fly_ensemble, fly_factors
 

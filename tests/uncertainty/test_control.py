@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sailviz.environment import solar_wind
-from sailviz.propagate import control as law
+from sailviz.propulsion import voltage_control as law
 from sailviz.propulsion import electric_sail
 from sailviz.uncertainty import control, wind
 

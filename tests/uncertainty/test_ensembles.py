@@ -15,18 +15,13 @@ from sailviz import steering
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN
 from sailviz.design.smoothed_transfer import smoothed_transfer
 from sailviz.environment.wind_laws import Gamma, Lognormal
-from sailviz.propagate import control, dop853, dynamics
+from sailviz.propulsion import voltage_control as control
+from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.ensemble_draws import normals
 from sailviz.propagate.events import watch
 from sailviz.propulsion.solar_sail import FILMS
 from sailviz.uncertainty.covariance import linear
-from sailviz.uncertainty.ensembles import (
-    GivenWind,
-    RandomWind,
-    ReplayedWind,
-    fly_ensemble,
-    fly_factors,
-)
+from sailviz.uncertainty.ensembles import GivenWind, RandomWind, ReplayedWind, fly_ensemble, fly_factors
 
 TU = np.sqrt(AU**3 / MU_SUN)
 CIRCULAR = ([AU, 0.0, 0.0], [0.0, np.sqrt(MU_SUN / AU), 0.0])

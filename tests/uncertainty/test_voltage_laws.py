@@ -9,7 +9,8 @@ from scipy.integrate import solve_ivp
 
 from sailviz import steering
 from sailviz.constants import AU, GRAVITY_AT_1_AU
-from sailviz.propagate import control, dynamics
+from sailviz.propulsion import voltage_control as control
+from sailviz.propagate import dynamics
 from sailviz.uncertainty import wind
 
 NAN = float("nan")

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from sailviz import ephemeris
-from sailviz.run import Run
+from sailviz.run.arrays import Run
 
 Motion = Callable[[np.ndarray], np.ndarray]  # times (n,) s after the first row -> positions (n, 3) m
 

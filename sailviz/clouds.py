@@ -13,7 +13,7 @@ import numpy as np
 from sailviz.constants import AU, SOLAR_IRRADIANCE
 from sailviz.errors import Fault, SceneError
 from sailviz.plan import Plan, film_of, sail_strength
-from sailviz.run import Cloud
+from sailviz.run.arrays import Cloud
 from sailviz.schedule import control_row, electrochromic, measured_wind, reference_pressure, sunlight, wind_law
 
 OUTPUTS = 181  # rows of the run at which clouds are known

@@ -9,7 +9,7 @@ import numpy as np
 from sailviz.closed_forms import FORMS, error
 from sailviz.elements import elements
 from sailviz.quantities import of_cloud, spellings
-from sailviz.run import Attitude, Run, Thrust
+from sailviz.run.arrays import Attitude, Run, Thrust
 from sailviz.scene import Expectation, Scene
 
 

@@ -28,7 +28,7 @@ from sailviz.propagate.plugs import user_address
 from sailviz.propulsion import electric_sail
 from sailviz.propulsion.devices import sail
 from sailviz.propulsion.solar_sail import FILMS, Film
-from sailviz.run import Body
+from sailviz.run.arrays import Body
 from sailviz.scene import Scene
 from sailviz.scene_sections import HELD_STARTS
 from sailviz.schedule import Schedule, schedule

@@ -14,7 +14,7 @@ from sailviz.units import UNITS, spelled
 if TYPE_CHECKING:
     import numpy as np
 
-    from sailviz.run import Cloud, Run
+    from sailviz.run.arrays import Cloud, Run
 
 DIMENSIONS = {
     "time": "time",
@@ -75,7 +75,7 @@ class Quantity:
 
     def of(self, run: Run) -> np.ndarray:
         """One value per row, in this unit. (n,)"""
-        from sailviz.quantity_values import VALUES
+        from sailviz.run.quantities import VALUES
 
         return VALUES[self.stem](run) / self.factor
 

@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from sailviz.errors import RecordingError
-from sailviz.recording import resample
+from sailviz.run import resample
 from sailviz.recording.comparison import Comparison, compare, default_tolerance
 from sailviz.recording.evidence import Evidence, evidence
 from sailviz.recording.exporter import _atomic, _write_npz, arrays
-from sailviz.run import Run
+from sailviz.run.arrays import Run
 
 SMOOTH = 0.7  # rad: where rows are closer on the orbit than this, a picture may draw a curve through them
 HEAD = """\
@@ -188,7 +188,7 @@ def _pictures(folder: Path) -> str:
 
 def _run_of(path: Path, side: str) -> Run:
     """The rows of an archive as a Run, to be looked at."""
-    from sailviz.trajectory import trajectory
+    from sailviz.run.from_arrays import trajectory
 
     data = evidence(path)
     tables = {entity: data.table(entity).columns for entity in data.entities}

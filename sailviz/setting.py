@@ -16,7 +16,7 @@ from sailviz.environment import ionosphere, solar_level, sun
 from sailviz.plan import TRACK_POINTS, Plan, epoch_of, sail_strength, third_body
 from sailviz.propagate import dop853, row
 from sailviz.propagate.choice import GAUSS_JACKSON
-from sailviz.run import Craft, Reference, Setting, Shell
+from sailviz.run.arrays import Craft, Reference, Setting, Shell
 from sailviz.scene_sections import HELD_STARTS
 
 SHELL_ANGLES, SHELL_STEP = 120, 25e3  # round the orbit; m between altitudes

@@ -14,7 +14,7 @@ from sailviz.observation import observe, voltages
 from sailviz.plan import Plan, plan
 from sailviz.propagate import dop853, dynamics, gauss_jackson, integration
 from sailviz.propagate.choice import DOP853, GAUSS_JACKSON
-from sailviz.run import Attitude, Event, Run, Thrust, join
+from sailviz.run.arrays import Attitude, Event, Run, Thrust, join
 from sailviz.scene import Scene
 from sailviz.setting import bodies, planets_in_view, setting_of
 

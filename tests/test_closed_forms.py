@@ -13,7 +13,7 @@ from sailviz.errors import SceneError
 from sailviz.expectations import Judge, Verdict, check, table
 from sailviz.recording.rows import take
 from sailviz.scene import Expectation
-from sailviz.trajectory import trajectory
+from sailviz.run.from_arrays import trajectory
 
 
 def scene(**changes):

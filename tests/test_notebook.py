@@ -13,7 +13,7 @@ import pytest
 
 import sailviz
 from sailviz.recording import record
-from sailviz.run import Event
+from sailviz.run.arrays import Event
 from sailviz.shipped import shipped_folder
 
 NOTEBOOKS = sorted((shipped_folder("scenes") / "notebooks").glob("*.ipynb"))

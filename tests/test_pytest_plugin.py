@@ -9,7 +9,7 @@ import pytest
 
 import sailviz.recording.write  # once out here, or every inner run would import rerun anew
 import sailviz.regression
-import sailviz.trajectory  # noqa: F401
+import sailviz.run.from_arrays  # noqa: F401
 
 pytest_plugins = ["pytester"]
 PLAIN = ("-p", "no:cacheprovider", "-p", "no:hypothesispytest")  # which imports hypothesis, every time
@@ -19,7 +19,7 @@ import numpy as np
 from dataclasses import replace
 from sailviz.constants import AU, MU_SUN
 from sailviz.elements import state
-from sailviz.trajectory import trajectory
+from sailviz.run.from_arrays import trajectory
 
 def flight(factor=1.0, events=(("half", 1e7),), rows=200):
     time = np.linspace(0, 3e7, rows)

@@ -10,7 +10,7 @@ import sailviz
 from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.errors import PropagationError, SceneError
 from sailviz.propagate.plugs import USER_SIGNATURE
-from sailviz.run import join
+from sailviz.run.arrays import join
 from sailviz.simulation import simulate, simulate_blocks
 
 COLUMNS = ("time", "position", "velocity", "mass")

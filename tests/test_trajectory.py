@@ -12,8 +12,8 @@ import pytest
 import sailviz
 from sailviz.constants import AU, MU_EARTH, MU_SUN, RADIUS_EARTH
 from sailviz.elements import state
-from sailviz.run import Event
-from sailviz.trajectory import TrajectoryError, record_trajectory, trajectory
+from sailviz.run.arrays import Event
+from sailviz.run.from_arrays import TrajectoryError, record_trajectory, trajectory
 
 SCRIPT = Path(__file__).parents[1] / "scenes" / "scripts" / "from_oem.py"
 ROWS = 50

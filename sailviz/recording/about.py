@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sailviz.recording.clouds import legend, scoreboard
-from sailviz.run import Event, Setting
+from sailviz.run.arrays import Event, Setting
 
 
 def about(setting: Setting, notes=()) -> str:

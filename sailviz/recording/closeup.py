@@ -16,7 +16,7 @@ from sailviz.recording.look import points
 from sailviz.recording.pen import Pen, f4
 from sailviz.recording.samples import Samples
 from sailviz.recording.world import draw_stars
-from sailviz.run import Run
+from sailviz.run.arrays import Run
 
 SIZE = {"solar-sail": 15.0, "electric-sail": 9.0, "thruster": 8.0, "none": 1.0}
 NORMAL_LENGTH = {"solar-sail": 13.0, "electric-sail": 10.0, "thruster": 10.0}

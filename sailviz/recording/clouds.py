@@ -20,7 +20,7 @@ from sailviz.recording.plots import nice_range
 from sailviz.recording.samples import Frame
 from sailviz.recording.slots import PlotView, Slot
 from sailviz.recording.truth import word
-from sailviz.run import Cloud, Setting
+from sailviz.run.arrays import Cloud, Setting
 
 PIECE = 3  # rows of a cloud in one piece of its paths
 RING = 49  # points of an ellipse

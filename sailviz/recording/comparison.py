@@ -20,7 +20,7 @@ import pyarrow as pa
 
 from sailviz.describe import duration
 from sailviz.errors import RecordingError
-from sailviz.recording import resample
+from sailviz.run import resample
 from sailviz.recording.evidence import Evidence, Table, evidence
 from sailviz.recording.reader import is_component
 

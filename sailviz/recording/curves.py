@@ -11,7 +11,7 @@ import rerun as rr
 from sailviz.recording import look, rows
 from sailviz.recording.plots import plots_of
 from sailviz.recording.samples import Frame
-from sailviz.run import Run
+from sailviz.run.arrays import Run
 
 PLOT_ROWS = 20_000
 FAR_ROWS = 1200  # where rows are far apart on their orbit: there are many curves of years, and no swing to be seen

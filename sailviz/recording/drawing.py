@@ -20,7 +20,7 @@ from sailviz.recording.pen import Pen
 from sailviz.recording.samples import Frame, Samples
 from sailviz.recording.tether import TetherCloseUp
 from sailviz.recording.world import LADDER, STRIP, World
-from sailviz.run import Event, Run, Setting, join
+from sailviz.run.arrays import Event, Run, Setting, join
 
 
 class Drawing:

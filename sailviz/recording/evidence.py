@@ -15,7 +15,7 @@ import pyarrow as pa
 
 from sailviz.errors import RecordingError
 from sailviz.recording.reader import TIMELINES, Entity, EventRow, Recording, group_by_columns, is_component, latest_static, read, short, to_numpy
-from sailviz.run import Run
+from sailviz.run.arrays import Run
 
 TRUTH = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/approximation")
 APART = (*TRUTH, "/events", "/scene", "/about")  # not part of the picture

@@ -203,7 +203,7 @@ def to_oem(source, path, frame: str = "") -> Path:
     precession and are named EME2000. Another body's frame is not known: it must be named, and nothing is rotated.
     RecordingError without an epoch: an ephemeris message dates every row.
     """
-    from sailviz.oem import ECLIPTIC, EQUATOR, EQUATOR_FROM_ECLIPTIC, Ephemeris, write_oem
+    from sailviz.run.oem import ECLIPTIC, EQUATOR, EQUATOR_FROM_ECLIPTIC, Ephemeris, write_oem
 
     data = evidence(source)
     if "/state" not in data.entities:

@@ -13,7 +13,7 @@ from sailviz.recording.curves import Curves
 from sailviz.recording.samples import PLANE_TURNS, Frame, Samples
 from sailviz.recording.slots import Slot, column, plot_views
 from sailviz.recording.truth import word
-from sailviz.run import Run, Setting
+from sailviz.run.arrays import Run, Setting
 
 PUSHES = 400  # rows at which the ends of arrows are looked at
 SEASON = 30 * 86400.0  # s of a run from which the eye over a planet goes along with the Sun

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from sailviz.errors import RecordingError
 from sailviz.recording.reader import Recording, read
-from sailviz.run import Run
+from sailviz.run.arrays import Run
 
 ASSET = "RERUN_NOTEBOOK_ASSET"
 

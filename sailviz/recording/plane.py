@@ -15,7 +15,7 @@ from sailviz.recording.look import points
 from sailviz.recording.pen import Pen, f4
 from sailviz.recording.samples import Frame, Samples, rings
 from sailviz.recording.truth import word
-from sailviz.run import Run, Shell
+from sailviz.run.arrays import Run, Shell
 
 CIRCLE = 361  # points
 STAIRS = 1.1  # how far the labels of the rings are spread, in heights of the highest

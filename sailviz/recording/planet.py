@@ -14,7 +14,7 @@ from sailviz.recording import look, meshes
 from sailviz.recording.look import points
 from sailviz.recording.pen import Pen
 from sailviz.recording.samples import Samples
-from sailviz.run import Run
+from sailviz.run.arrays import Run
 
 NIGHT_EDGES = np.radians(np.linspace(100, 78, 16))  # half-angles of what darkens: together a soft terminator
 NIGHT_ALPHA = 55 / 255  # of each of them, one over the other

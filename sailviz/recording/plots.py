@@ -9,7 +9,7 @@ import numpy as np
 
 from sailviz.recording import look
 from sailviz.recording.samples import Frame
-from sailviz.run import Run
+from sailviz.run.arrays import Run
 
 
 @dataclass(frozen=True)

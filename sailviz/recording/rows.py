@@ -13,7 +13,7 @@ import rerun as rr
 
 from sailviz.constants import YEAR
 from sailviz.errors import RecordingError
-from sailviz.run import COLUMNS, Run
+from sailviz.run.arrays import COLUMNS, Run
 
 LONGEST = 2**63 / 1e9  # s that a timeline of 64-bit nanoseconds can count: 292 years
 

@@ -12,7 +12,7 @@ from sailviz.constants import AU, ROTATION_EARTH
 from sailviz.elements import Elements, state
 from sailviz.frames import quaternion, rtn, to_frame, unit
 from sailviz.recording import rows
-from sailviz.run import Run, Setting
+from sailviz.run.arrays import Run, Setting
 
 PICTURE_ROWS = 3000  # as many as a replay of 40 s has frames, and then some
 SPARSE_ROWS = 1200  # where the craft goes round slowly

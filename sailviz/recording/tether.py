@@ -17,7 +17,7 @@ from sailviz.recording.pen import Pen, f4
 from sailviz.recording.planet import about_axis, draw_air, draw_planet
 from sailviz.recording.samples import Samples
 from sailviz.recording.world import draw_stars
-from sailviz.run import Run
+from sailviz.run.arrays import Run
 
 TETHER = 12.0
 ARROWS = 14  # along the tether

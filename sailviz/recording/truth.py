@@ -24,7 +24,7 @@ import numpy as np
 import pyarrow as pa
 import rerun as rr
 
-from sailviz.run import Cloud, Event, Run
+from sailviz.run.arrays import Cloud, Event, Run
 
 CONTRACT = "sailviz/1"
 

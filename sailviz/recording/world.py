@@ -20,7 +20,7 @@ from sailviz.recording.plane import OrbitPlane, notes
 from sailviz.recording.planet import Planet
 from sailviz.recording.samples import PLANE_TURNS, SPARSE, Frame, Samples, arc, orbits, smooth_lines
 from sailviz.recording.truth import word
-from sailviz.run import Reference, Run
+from sailviz.run.arrays import Reference, Run
 
 STRIP = 4  # drawn rows in one piece of the trail
 LADDER = 12  # osculating orbits that show a long descent

@@ -20,7 +20,7 @@ from sailviz.errors import PropagationError, RecordingError
 from sailviz.recording import rows, truth
 from sailviz.recording.drawing import Drawing
 from sailviz.recording.sinks import File, Memory, Web, attach, discard, resolve, web_address
-from sailviz.run import Event, Run
+from sailviz.run.arrays import Event, Run
 
 BLOCK = 16_384  # rows sent at once: large enough for speed, small enough for memory
 

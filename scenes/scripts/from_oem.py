@@ -9,7 +9,7 @@ from pathlib import Path
 
 import sailviz
 from sailviz.constants import MU_EARTH, MU_SUN
-from sailviz.oem import read_oem
+from sailviz.run.oem import read_oem
 
 MU = {"SUN": MU_SUN, "EARTH": MU_EARTH}
 

@@ -14,7 +14,7 @@ from sailviz.elements import elements, state
 from sailviz.frames import body_axes, from_frame, pitch_cone_clock, quaternion, rtn, to_frame, unit
 from sailviz.recording import record
 from sailviz.recording.rows import take
-from sailviz.run import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust
+from sailviz.run.arrays import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust
 
 AU = 149_597_870_700.0
 MU_SUN = 1.327_124_400_18e20

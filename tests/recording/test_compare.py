@@ -9,7 +9,7 @@ import rerun as rr
 import sailviz
 from sailviz.errors import RecordingError
 from sailviz.recording import Recorder, compare, export, record
-from sailviz.recording.resample import at, cost
+from sailviz.run.resample import at, cost
 from sailviz.recording.rows import take
 from sailviz.recording.truth import tables
 

@@ -8,7 +8,7 @@ import pyarrow.parquet
 import pytest
 
 from sailviz.errors import RecordingError
-from sailviz.oem import EQUATOR_FROM_ECLIPTIC, read_oem
+from sailviz.run.oem import EQUATOR_FROM_ECLIPTIC, read_oem
 from sailviz.recording import export, info, record
 from sailviz.recording.truth import tables
 

@@ -187,12 +187,12 @@ class Run:
         return len(self.time)
 
     def __repr__(self) -> str:
-        from sailviz.summary import span
+        from sailviz.run.summary import span
 
         return f"<Run {self.setting.title}: {span(self)}>"
 
     def _repr_html_(self) -> str:
-        from sailviz.summary import html
+        from sailviz.run.summary import html
 
         return html(self)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.run import Run
+from sailviz.run.arrays import Run
 
 
 def _distance(run: Run):

@@ -21,7 +21,7 @@ from sailviz import ephemeris, frames
 from sailviz.constants import MU_EARTH, MU_SUN, RADIUS_EARTH, RADIUS_SUN
 from sailviz.elements import elements
 from sailviz.errors import RecordingError
-from sailviz.run import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust
+from sailviz.run.arrays import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust
 
 LABELS = {
     "solar-sail": "Solar sail",
@@ -276,7 +276,7 @@ class _Checks:
         return tuple(found)
 
     def events(self, events, time, position, velocity) -> tuple[Event, ...]:
-        from sailviz.recording import resample
+        from sailviz.run import resample
 
         found = []
         for item in events:

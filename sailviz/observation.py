@@ -6,7 +6,7 @@ import numpy as np
 
 from sailviz import elements as orbital
 from sailviz import ephemeris
-from sailviz import steering as law
+from sailviz.steering import attitude as law
 from sailviz.constants import ATOMIC_MASS, J2_EARTH, RADIUS_EARTH
 from sailviz.plan import Plan, epoch_of
 from sailviz.plan_low_orbit import watches_shadow

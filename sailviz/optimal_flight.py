@@ -8,7 +8,7 @@ from sailviz import frames
 from sailviz.constants import MU_SUN
 from sailviz.design.reflight import Solved, from_planar, primer_history
 from sailviz.errors import Fault, SceneError
-from sailviz.optimal_steering import optimal_pitch
+from sailviz.steering.optimal import optimal_pitch
 
 
 def primer_table(scene, position, velocity, device, characteristic_acceleration):

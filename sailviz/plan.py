@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from sailviz import elements as orbital
-from sailviz import ephemeris, frames, primers
-from sailviz import steering as law
+from sailviz import ephemeris, frames
+from sailviz.steering import primers
+from sailviz.steering import attitude as law
 from sailviz.constants import AU, DAY, J2_EARTH, MU_EARTH, MU_SUN, RADIUS_EARTH, RADIUS_SUN, STANDARD_GRAVITY
 from sailviz.design import displaced, spirals
 from sailviz.design.holding import Track

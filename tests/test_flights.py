@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import sailviz
-from sailviz import steering as law
+from sailviz.steering import attitude as law
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
 from sailviz.design import displaced, spirals
 from sailviz.propagate import dop853, dynamics

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sailviz import steering as law
+from sailviz.steering import attitude as law
 from sailviz.constants import DAY, J2_EARTH, MU_EARTH, RADIUS_EARTH
 from sailviz.elements import state as state_on_orbit
 from sailviz.propagate import choice, dop853, dynamics, gauss_jackson, row

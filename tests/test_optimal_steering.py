@@ -9,7 +9,7 @@ from scipy.optimize import brentq
 from sailviz.constants import AU
 from sailviz.propulsion import electric_sail
 from sailviz.propulsion.solar_sail import FILMS, Film
-from sailviz.steering import analytic_pitch, optimal_pitch
+from sailviz.steering.attitude import analytic_pitch, optimal_pitch
 
 ELECTRIC = {
     "electric-sail": "final",

@@ -7,9 +7,10 @@ from dataclasses import astuple
 import numpy as np
 import pytest
 
-from sailviz import elements, primers
+from sailviz import elements
+from sailviz.steering import primers
 from sailviz.compiled import compiled
-from sailviz.optimal_steering import analytic_pitch, optimal_pitch, towards_primer, towards_primer_analytic
+from sailviz.steering.optimal import analytic_pitch, optimal_pitch, towards_primer, towards_primer_analytic
 from sailviz.propulsion import electric_sail, solar_sail
 from sailviz.propulsion.devices import sail
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sailviz import frames
-from sailviz import steering as law
+from sailviz.steering import attitude as law
 from sailviz.propagate import dynamics
 
 RNG = np.random.default_rng(11)

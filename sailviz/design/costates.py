@@ -20,7 +20,7 @@ import numpy as np
 
 from sailviz.compiled import called, compiled
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
-from sailviz.optimal_steering import full_thrust, optimal_pitch, steer
+from sailviz.steering.optimal import full_thrust, optimal_pitch, steer
 from sailviz.propagate import dop853_coefficients as _c
 from sailviz.propulsion.devices import ELECTRIC_SAIL, sail
 

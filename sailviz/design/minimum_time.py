@@ -19,7 +19,7 @@ from sailviz.design.minimum_time_problems import BetweenEllipses, ToCircle, hami
 from sailviz.design.minimum_time_search import Extremal, Search, follow, search, spiral_time
 from sailviz.design.rendezvous import rendezvous  # noqa: F401  part of this module's face
 from sailviz.design.transfers import orbit_to_orbit  # noqa: F401
-from sailviz.optimal_steering import optimal_pitch
+from sailviz.steering.optimal import optimal_pitch
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film
 

@@ -14,7 +14,7 @@ import numpy as np
 from sailviz.compiled import compiled
 from sailviz.design import costates
 from sailviz.design.costates import Sail
-from sailviz.optimal_steering import full_thrust, steer
+from sailviz.steering.optimal import full_thrust, steer
 
 SHORTEST = 1e-3  # flight time of a flight whatever its unknowns say
 

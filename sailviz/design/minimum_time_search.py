@@ -19,7 +19,7 @@ import numpy as np
 from sailviz.compiled import compiled
 from sailviz.design import shooting
 from sailviz.design.costates import SIZE, propagate_compiled
-from sailviz.optimal_steering import optimal_pitch
+from sailviz.steering.optimal import optimal_pitch
 
 LOOSE, TIGHT = 1e-9, 1e-13  # integration tolerances
 ROUGH = 1e-6  # of screening

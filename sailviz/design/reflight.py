@@ -16,7 +16,7 @@ from sailviz import frames
 from sailviz.constants import AU
 from sailviz.design import costates
 from sailviz.design.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
-from sailviz.optimal_steering import optimal_pitch
+from sailviz.steering.optimal import optimal_pitch
 
 FEWEST, MOST = 200, 200_000  # rows of a grid that is halved until it is fine enough
 BESIDE = 1e-9  # of the flight, from a switch to where its two sides are read

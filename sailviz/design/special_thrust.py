@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from scipy.integrate import quad
 
-from sailviz import steering as law
+from sailviz.steering import attitude as law
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import ENERGY, STOP, watch
 

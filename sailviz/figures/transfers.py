@@ -7,7 +7,7 @@ from matplotlib.dates import DateFormatter, MonthLocator
 
 from sailviz.figures import transfer_data
 from sailviz.figures.transfer_data import COMPARED, OVER_ACCELERATION, TARGETS
-from sailviz.optimal_steering import analytic_pitch, optimal_pitch
+from sailviz.steering.optimal import analytic_pitch, optimal_pitch
 from sailviz.propulsion.solar_sail import FILMS
 
 WORDS = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz import steering
+from sailviz.steering import attitude as steering
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN, YEAR
 from sailviz.design.smoothed_transfer import smoothed_transfer
 from sailviz.environment import solar_wind

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sailviz import steering as law
+from sailviz.steering import attitude as law
 from sailviz.compiled import called, compiled, inlined
 from sailviz.environment.atmosphere import air_drag
 from sailviz.environment.gravity import gravity

@@ -9,10 +9,10 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from sailviz import steering as law
+from sailviz.steering import attitude as law
 from sailviz.compiled import called, compiled
-from sailviz.optimal_steering import steer, towards_primer
-from sailviz.primers import locally_optimal_primer, lyapunov_primer
+from sailviz.steering.optimal import steer, towards_primer
+from sailviz.steering.primers import locally_optimal_primer, lyapunov_primer
 from sailviz.propagate import row as at
 from sailviz.propagate.plugs import plug_address
 

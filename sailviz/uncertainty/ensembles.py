@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailviz import steering as laws
+from sailviz.steering import attitude as laws
 from sailviz.constants import AU, DAY, MU_SUN, YEAR
 from sailviz.environment.solar_wind import CORRELATION_TIME, KINDS
 from sailviz.environment.wind_laws import Law

@@ -17,7 +17,7 @@ from time import process_time_ns
 import numpy as np
 import pytest
 
-from sailviz import steering as law
+from sailviz.steering import attitude as law
 from sailviz.constants import AU, MU_SUN
 from sailviz.design import asymptotic, asymptotic_legs
 from sailviz.propagate import dop853, dynamics

@@ -15,7 +15,7 @@ from time import process_time
 import numpy as np
 import pytest
 
-from sailviz import steering as law
+from sailviz.steering import attitude as law
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN
 from sailviz.environment.wind_laws import Gamma
 from sailviz.propulsion import voltage_control as control

@@ -12,7 +12,7 @@ from time import thread_time
 import numpy as np
 import pytest
 
-from sailviz import steering as law
+from sailviz.steering import attitude as law
 from sailviz.constants import AU, GRAVITY_AT_1_AU
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch

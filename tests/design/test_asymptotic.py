@@ -443,7 +443,7 @@ def test_thrust_of_devices_is_that_of_the_reference():
 
 def test_analytic_flight_is_the_propagated_one(fly):
     """The E-sail of A26, propagated in three dimensions, against midpoint legs of 11 deg: position within 4e-5 au."""
-    from sailviz import steering as law
+    from sailviz.steering import attitude as law
     from sailviz.propagate import dynamics
 
     pitch, ac = np.radians(45), 1e-4

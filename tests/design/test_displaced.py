@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from sailviz import steering as law
+from sailviz.steering import attitude as law
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_EARTH, MU_SUN
 from sailviz.design import displaced
 from sailviz.propagate import dynamics

@@ -9,11 +9,11 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
-from sailviz import steering as law
+from sailviz.steering import attitude as law
 from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.design import costates, reflight
 from sailviz.design.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
-from sailviz.optimal_steering import optimal_pitch
+from sailviz.steering.optimal import optimal_pitch
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
 from sailviz.propulsion import electric_sail, solar_sail

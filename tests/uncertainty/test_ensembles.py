@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from sailviz import steering
+from sailviz.steering import attitude as steering
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN
 from sailviz.design.smoothed_transfer import smoothed_transfer
 from sailviz.environment.wind_laws import Gamma, Lognormal

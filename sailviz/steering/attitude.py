@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from sailviz.compiled import inlined
-from sailviz.optimal_steering import analytic_pitch, optimal_pitch  # noqa: F401  part of this module's face
+from sailviz.steering.optimal import analytic_pitch, optimal_pitch  # noqa: F401  part of this module's face
 
 RADIAL, ORBITAL, MERIDIAN, TRANSVERSE, TANGENTIAL, INERTIAL, TABLE_ORBITAL, TABLE_MERIDIAN, USER = range(9)
 PRIMER, LOCAL, LYAPUNOV = range(9, 12)  # towards the most thrust along a primer: from a table, for an element, for all

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from sailviz.constants import SOLAR_IRRADIANCE, WIND_POTENTIAL, WIND_PRESSURE
-from sailviz.environment import irradiance, solar_wind, wind_laws
+from sailviz.environment import irradiance
+from sailviz.environment.solar_wind import pressure as solar_wind, laws as wind_laws
 from sailviz.errors import Fault, SceneError
 from sailviz.propulsion import voltage_control as control
 from sailviz.propagate import control_plug as knows
@@ -141,7 +142,7 @@ def wind_law(wind) -> wind_laws.Law:
 @cache
 def _series(path, repair):
     """A measured series from any file that the readers know; read once per process."""
-    from sailviz.environment import wind_series
+    from sailviz.environment.solar_wind import series as wind_series
 
     text = Path(path).suffix.lower() in ("", ".dat", ".txt", ".lst", ".asc")
     return (wind_series.read_omni if text else wind_series.read_series)(path, repair=repair)

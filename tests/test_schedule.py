@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from sailviz import load_scene
 from sailviz.cli import main
 from sailviz.constants import AU, DAY, YEAR
-from sailviz.environment.solar_wind import PHASES
+from sailviz.environment.solar_wind.pressure import PHASES
 from sailviz.errors import SceneError
 from sailviz.schedule import schedule
 from sailviz.simulation import simulate

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from sailviz.constants import DAY, SOLAR_IRRADIANCE, YEAR
-from sailviz.environment.solar_wind import generator, relaxing_normals
+from sailviz.environment.solar_wind.pressure import generator, relaxing_normals
 
 PERIOD = 11.15 * YEAR  # s, of the best sinusoid
 AMPLITUDE = 3.6e-4  # of S0, of the best sinusoid; annual means swing by 0.1 %, half of which is 5e-4

@@ -17,7 +17,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from sailviz.environment.wind_laws import Gamma
+from sailviz.environment.solar_wind.laws import Gamma
 
 BASES = ("root", "laguerre")
 SAMPLES = 20_000  # pressures, equally probable, whose images give the percentiles

@@ -13,8 +13,8 @@ import numpy as np
 
 from sailviz.steering import attitude as laws
 from sailviz.constants import AU, DAY, MU_SUN, YEAR
-from sailviz.environment.solar_wind import CORRELATION_TIME, KINDS
-from sailviz.environment.wind_laws import Law
+from sailviz.environment.solar_wind.pressure import CORRELATION_TIME, KINDS
+from sailviz.environment.solar_wind.laws import Law
 from sailviz.propulsion import voltage_control as voltage
 from sailviz.propagate.ensemble import LINEAR, ROOT, SEEN, Wind, covariance, fly, percentiles
 from sailviz.propagate.ensemble_draws import DRAWN, GIVEN, REPLAYED

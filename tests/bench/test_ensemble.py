@@ -17,7 +17,7 @@ import pytest
 
 from sailviz.steering import attitude as law
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN
-from sailviz.environment.wind_laws import Gamma
+from sailviz.environment.solar_wind.laws import Gamma
 from sailviz.propulsion import voltage_control as control
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch

@@ -8,9 +8,9 @@ from scipy import stats
 from scipy.integrate import quad
 
 from sailviz.constants import DAY, YEAR
-from sailviz.environment import solar_wind
-from sailviz.environment.wind_laws import LAWS, named
-from sailviz.environment.wind_series import read_omni, read_series, series
+from sailviz.environment.solar_wind import pressure as solar_wind
+from sailviz.environment.solar_wind.laws import LAWS, named
+from sailviz.environment.solar_wind.series import read_omni, read_series, series
 from sailviz.uncertainty.wind import fit
 
 HOUR = 3600.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sailviz.environment import solar_wind
+from sailviz.environment.solar_wind import pressure as solar_wind
 from sailviz.uncertainty import wind
 
 HOUR = 3600.0

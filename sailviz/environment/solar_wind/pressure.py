@@ -15,8 +15,8 @@ import numpy as np
 
 from sailviz.compiled import compiled
 from sailviz.constants import ELEMENTARY_CHARGE, MASS_PROTON, WIND_POTENTIAL, YEAR
-from sailviz.environment.wind_laws import Gamma, Law
-from sailviz.environment.wind_series import Series
+from sailviz.environment.solar_wind.laws import Gamma, Law
+from sailviz.environment.solar_wind.series import Series
 
 KINDS = ("constant", "redrawn", "correlated")
 CORRELATION_TIME = 17 * 3600.0  # s, of the normal number behind the pressure; hourly sqrt p falls to 1/e in 16 h

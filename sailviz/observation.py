@@ -10,9 +10,9 @@ from sailviz.steering import attitude as law
 from sailviz.constants import ATOMIC_MASS, J2_EARTH, RADIUS_EARTH
 from sailviz.plan import Plan, epoch_of
 from sailviz.plan_low_orbit import watches_shadow
-from sailviz.propagate import control_plug, dynamics, row
-from sailviz.propagate import low_orbit as seen
-from sailviz.propagate.primer_laws import observe_primer
+from sailviz.propagate import voltage_callback as control_plug, dynamics, parameters as row
+from sailviz.propagate import low_orbit_callback as seen
+from sailviz.propagate.primer_callback import observe_primer
 from sailviz.propulsion.plasma_brake import validity
 
 

@@ -24,8 +24,8 @@ from sailviz.plan_low_orbit import brake_device, low_orbit_parts
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate import events as happening
 from sailviz.propagate.choice import Choice, choose
-from sailviz.propagate.control_plug import R_REF, U_REF, WANTED, factor_plug
-from sailviz.propagate.plugs import user_address
+from sailviz.propagate.voltage_callback import R_REF, U_REF, WANTED, factor_plug
+from sailviz.propagate.callbacks import user_address
 from sailviz.propulsion import electric_sail
 from sailviz.propulsion.devices import sail
 from sailviz.propulsion.solar_sail import FILMS, Film
@@ -414,7 +414,7 @@ def _primer_law(scene, law_id, device, device_parameters):
     """Keywords of `dynamics.model` for a law that follows a primer."""
     if law_id not in (law.PRIMER, law.LOCAL, law.LYAPUNOV):
         return {}
-    from sailviz.propagate.primer_laws import normal_plug
+    from sailviz.propagate.primer_callback import normal_plug
 
     other = scene.steering.reckons_with
     kind, parameters = (device, device_parameters) if other is None else sail(other, 1.0)

@@ -14,7 +14,7 @@ from sailviz.environment import irradiance
 from sailviz.environment.solar_wind import pressure as solar_wind, laws as wind_laws
 from sailviz.errors import Fault, SceneError
 from sailviz.propulsion import voltage_control as control
-from sailviz.propagate import control_plug as knows
+from sailviz.propagate import voltage_callback as knows
 
 NOMINAL_VOLTAGE = 20e3  # V, of an electric sail that does not say its own
 

@@ -14,7 +14,7 @@ from sailviz.describe import parameters_in_words
 from sailviz.design.holding import Track
 from sailviz.environment import ionosphere, solar_level, sun
 from sailviz.plan import TRACK_POINTS, Plan, epoch_of, sail_strength, third_body
-from sailviz.propagate import dop853, row
+from sailviz.propagate import dop853, parameters as row
 from sailviz.propagate.choice import GAUSS_JACKSON
 from sailviz.run.arrays import Craft, Reference, Setting, Shell
 from sailviz.scene_sections import HELD_STARTS

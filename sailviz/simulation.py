@@ -12,7 +12,7 @@ from sailviz import frames
 from sailviz.errors import PropagationError
 from sailviz.observation import observe, voltages
 from sailviz.plan import Plan, plan
-from sailviz.propagate import dop853, dynamics, gauss_jackson, integration
+from sailviz.propagate import dop853, dynamics, gauss_jackson, stepping as integration
 from sailviz.propagate.choice import DOP853, GAUSS_JACKSON
 from sailviz.run.arrays import Attitude, Event, Run, Thrust, join
 from sailviz.scene import Scene

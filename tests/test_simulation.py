@@ -9,7 +9,7 @@ import pytest
 import sailviz
 from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.errors import PropagationError, SceneError
-from sailviz.propagate.plugs import USER_SIGNATURE
+from sailviz.propagate.callbacks import USER_SIGNATURE
 from sailviz.run.arrays import join
 from sailviz.simulation import simulate, simulate_blocks
 

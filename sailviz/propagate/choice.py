@@ -9,8 +9,8 @@ import numpy as np
 from sailviz.propagate.dynamics import DEVICE, MU, SURFACE_RADIUS, THRUSTER
 from sailviz.propagate.gauss_jackson import ANGLE, LARGEST_ECCENTRICITY
 from sailviz.propagate.gauss_jackson_coefficients import LAGS
-from sailviz.propagate.low_orbit import TABLE_PROFILE
-from sailviz.propagate.row import AIR, ECLIPSE_POWER, PLASMA, PLASMA_ON, POWER, TABLED_AIR
+from sailviz.propagate.low_orbit_callback import TABLE_PROFILE
+from sailviz.propagate.parameters import AIR, ECLIPSE_POWER, PLASMA, PLASMA_ON, POWER, TABLED_AIR
 
 DOP853, GAUSS_JACKSON = "dop853", "gauss-jackson"
 FEWEST_TURNS = 50  # below, DOP853 is as accurate and the gain is microseconds

@@ -17,21 +17,21 @@ from sailviz.compiled import compiled, inlined
 from sailviz.propagate import dop853_coefficients as c
 from sailviz.propagate.dynamics import MU, SIZE, SURFACE_RADIUS, Model, derivative
 from sailviz.propagate.events import Watch, measure
-from sailviz.propagate.integration import CLOCK, DENSE, DENSE_START, DENSE_STEP, EVENT_SAMPLES, EVENTS, IN_USE, INTERVAL, NEW, REJECTED, ROW, STARTED, STATUS, STEP, STEPS, TIME, Integration, W, Y, factor_from, fill, happenings, surface_met
-from sailviz.propagate.integration import DONE as DONE
-from sailviz.propagate.integration import EVENTS_FULL as EVENTS_FULL
-from sailviz.propagate.integration import MOST_EVENTS as MOST_EVENTS
-from sailviz.propagate.integration import NOT_FINITE as NOT_FINITE
-from sailviz.propagate.integration import STOPPED as STOPPED
-from sailviz.propagate.integration import SURFACE as SURFACE
-from sailviz.propagate.integration import UNDERFLOW as UNDERFLOW
-from sailviz.propagate.integration import drain_events as drain_events
-from sailviz.propagate.integration import in_use as in_use
-from sailviz.propagate.integration import rows_done as rows_done
-from sailviz.propagate.integration import state as state
-from sailviz.propagate.integration import statistics as statistics
-from sailviz.propagate.integration import stopped_by as stopped_by
-from sailviz.propagate.integration import time as time
+from sailviz.propagate.stepping import CLOCK, DENSE, DENSE_START, DENSE_STEP, EVENT_SAMPLES, EVENTS, IN_USE, INTERVAL, NEW, REJECTED, ROW, STARTED, STATUS, STEP, STEPS, TIME, Integration, W, Y, factor_from, fill, happenings, surface_met
+from sailviz.propagate.stepping import DONE as DONE
+from sailviz.propagate.stepping import EVENTS_FULL as EVENTS_FULL
+from sailviz.propagate.stepping import MOST_EVENTS as MOST_EVENTS
+from sailviz.propagate.stepping import NOT_FINITE as NOT_FINITE
+from sailviz.propagate.stepping import STOPPED as STOPPED
+from sailviz.propagate.stepping import SURFACE as SURFACE
+from sailviz.propagate.stepping import UNDERFLOW as UNDERFLOW
+from sailviz.propagate.stepping import drain_events as drain_events
+from sailviz.propagate.stepping import in_use as in_use
+from sailviz.propagate.stepping import rows_done as rows_done
+from sailviz.propagate.stepping import state as state
+from sailviz.propagate.stepping import statistics as statistics
+from sailviz.propagate.stepping import stopped_by as stopped_by
+from sailviz.propagate.stepping import time as time
 
 SAFETY, SHRINK_MOST, GROW_MOST = 0.9, 0.333, 6.0  # of the step-size controller: Hairer's values
 VECTOR = 16  # rows that one turn of the compiled output loop fills

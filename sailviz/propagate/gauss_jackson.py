@@ -34,16 +34,16 @@ from sailviz.propagate.dynamics import DEVICE, MU, SIZE, SURFACE_RADIUS, THRUSTE
 from sailviz.propagate.events import Watch, measure
 from sailviz.propagate.events import watch as no_events
 from sailviz.propagate.gauss_jackson_coefficients import LAGS
-from sailviz.propagate.integration import CLOCK, DENSE, DENSE_START, DENSE_STEP, DONE, EVENT_SAMPLES, EVENTS, EVENTS_FULL, IN_USE, INTERVAL, MOST_EVENTS, NEW, ROW, STARTED, STATUS, STEP, STEPS, STOPPED, SURFACE, TIME, Integration, W, Y, factor_from, fill, happenings, surface_met
-from sailviz.propagate.integration import NOT_FINITE as NOT_FINITE
-from sailviz.propagate.integration import UNDERFLOW as UNDERFLOW
-from sailviz.propagate.integration import drain_events as drain_events
-from sailviz.propagate.integration import in_use as in_use
-from sailviz.propagate.integration import rows_done as rows_done
-from sailviz.propagate.integration import state as state
-from sailviz.propagate.integration import statistics as statistics
-from sailviz.propagate.integration import stopped_by as stopped_by
-from sailviz.propagate.integration import time as time
+from sailviz.propagate.stepping import CLOCK, DENSE, DENSE_START, DENSE_STEP, DONE, EVENT_SAMPLES, EVENTS, EVENTS_FULL, IN_USE, INTERVAL, MOST_EVENTS, NEW, ROW, STARTED, STATUS, STEP, STEPS, STOPPED, SURFACE, TIME, Integration, W, Y, factor_from, fill, happenings, surface_met
+from sailviz.propagate.stepping import NOT_FINITE as NOT_FINITE
+from sailviz.propagate.stepping import UNDERFLOW as UNDERFLOW
+from sailviz.propagate.stepping import drain_events as drain_events
+from sailviz.propagate.stepping import in_use as in_use
+from sailviz.propagate.stepping import rows_done as rows_done
+from sailviz.propagate.stepping import state as state
+from sailviz.propagate.stepping import statistics as statistics
+from sailviz.propagate.stepping import stopped_by as stopped_by
+from sailviz.propagate.stepping import time as time
 
 ANGLE = 0.067  # rad that the craft turns at periapsis in one step
 LONGEST, SHORTEST = 1.025, 0.8  # bounds of a step over what the rule says now; outside them it is chosen anew

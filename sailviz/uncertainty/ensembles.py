@@ -16,10 +16,10 @@ from sailviz.constants import AU, DAY, MU_SUN, YEAR
 from sailviz.environment.solar_wind.pressure import CORRELATION_TIME, KINDS
 from sailviz.environment.solar_wind.laws import Law
 from sailviz.propulsion import voltage_control as voltage
-from sailviz.propagate.ensemble import LINEAR, ROOT, SEEN, Wind, covariance, fly, percentiles
-from sailviz.propagate.ensemble_draws import DRAWN, GIVEN, REPLAYED
-from sailviz.propagate.ensemble_motion import MERIDIAN, ORBITAL, PLANE
-from sailviz.propagate.ensemble_plan import nominal, refined, segments
+from sailviz.propagate.ensemble.flights import LINEAR, ROOT, SEEN, Wind, covariance, fly, percentiles
+from sailviz.propagate.ensemble.draws import DRAWN, GIVEN, REPLAYED
+from sailviz.propagate.ensemble.motion import MERIDIAN, ORBITAL, PLANE
+from sailviz.propagate.ensemble.segments import nominal, refined, segments
 from sailviz.propulsion import electric_sail, solar_sail
 from sailviz.propulsion.electric_sail import MODELS
 from sailviz.propulsion.solar_sail import FILMS, Film

@@ -17,7 +17,7 @@ from sailviz.design.smoothed_transfer import smoothed_transfer
 from sailviz.environment.solar_wind.laws import Gamma, Lognormal
 from sailviz.propulsion import voltage_control as control
 from sailviz.propagate import dop853, dynamics
-from sailviz.propagate.ensemble_draws import normals
+from sailviz.propagate.ensemble.draws import normals
 from sailviz.propagate.events import watch
 from sailviz.propulsion.solar_sail import FILMS
 from sailviz.uncertainty.covariance import linear

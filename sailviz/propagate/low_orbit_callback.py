@@ -15,8 +15,8 @@ from sailviz.environment import ionosphere as plasma
 from sailviz.environment.eclipse import NO_SHADOW, sunlit
 from sailviz.environment.gravity import geodetic_altitude
 from sailviz.environment.solar_level import flux
-from sailviz.propagate import row as at
-from sailviz.propagate.plugs import plug_address
+from sailviz.propagate import parameters as at
+from sailviz.propagate.callbacks import plug_address
 from sailviz.propulsion.plasma_brake import limited_voltage, negative_force_per_length, positive_force_per_length, tether_current
 
 TABLE_PROFILE = 2  # of the plasma, beside the exponential profiles of environment.ionosphere

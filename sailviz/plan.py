@@ -16,8 +16,9 @@ from sailviz import ephemeris, frames
 from sailviz.steering import primers
 from sailviz.steering import attitude as law
 from sailviz.constants import AU, DAY, J2_EARTH, MU_EARTH, MU_SUN, RADIUS_EARTH, RADIUS_SUN, STANDARD_GRAVITY
-from sailviz.design import displaced, spirals
-from sailviz.design.holding import Track
+from sailviz.design.displaced import orbits as displaced
+from sailviz.design import spirals
+from sailviz.design.displaced.holding import Track
 from sailviz.environment.sun import sun_parameters
 from sailviz.errors import Fault, SceneError
 from sailviz.plan_low_orbit import brake_device, low_orbit_parts
@@ -196,7 +197,7 @@ TRACK_POINTS = 720  # of the steering table, per revolution: its cubic is then g
 
 def _track(scene, device):
     """The Track of an elliptic displaced orbit over the whole run, at equal steps of true anomaly."""
-    from sailviz.design import displaced_tracks
+    from sailviz.design.displaced import tracks as displaced_tracks
 
     start = scene.start
     if start.kind == "planet-following":

@@ -11,7 +11,7 @@ import sailviz
 from sailviz import elements as orbital
 from sailviz import ephemeris
 from sailviz.describe import parameters_in_words
-from sailviz.design.holding import Track
+from sailviz.design.displaced.holding import Track
 from sailviz.environment import ionosphere, solar_level, sun
 from sailviz.plan import TRACK_POINTS, Plan, epoch_of, sail_strength, third_body
 from sailviz.propagate import dop853, parameters as row

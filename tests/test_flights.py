@@ -8,7 +8,8 @@ import pytest
 import sailviz
 from sailviz.steering import attitude as law
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
-from sailviz.design import displaced, spirals
+from sailviz.design.displaced import orbits as displaced
+from sailviz.design import spirals
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import APSIS, ENERGY, RECORD, STOP
 from sailviz.propulsion import electric_sail, solar_sail

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
-from sailviz.design.force_shape import force_shape
+from sailviz.design.displaced.force_shape import force_shape
 from sailviz.propulsion.solar_sail import FILMS, Film, acceleration, film
 
 DEG = np.pi / 180

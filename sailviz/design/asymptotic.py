@@ -16,7 +16,7 @@ import numpy as np
 
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
 from sailviz.design import asymptotic_legs as legs_of
-from sailviz.design.force_shape import force_shape
+from sailviz.design.displaced.force_shape import force_shape
 
 DOUBTFUL = 0.03  # relative error in r from which a result says that it should not be trusted
 ADAPTIVE_CAP = np.pi / 2  # rad; with legs near a revolution the step-doubling estimate aliases and under-reports

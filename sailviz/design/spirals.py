@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailviz.design.force_shape import force_shape
+from sailviz.design.displaced.force_shape import force_shape
 from sailviz.propulsion.solar_sail import FILMS, Film
 
 

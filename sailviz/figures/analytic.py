@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.colors import LogNorm
 
 from sailviz.design import asymptotic, special_thrust, spirals
-from sailviz.design.force_shape import force_shape
+from sailviz.design.displaced.force_shape import force_shape
 
 CIRCLE = [0.0, 0.0, 1.0]
 LAWS = {  # title -> exponent, radial over transverse thrust

@@ -10,7 +10,7 @@ import numpy as np
 
 import sailviz
 from sailviz.constants import AU, DAY, MU_SUN
-from sailviz.design.displaced_tracks import track
+from sailviz.design.displaced.tracks import track
 
 radius, rate = 0.95 * AU, 0.8 * np.sqrt(MU_SUN / (0.95 * AU) ** 3)
 time = np.linspace(0, 3 * 365.25 * DAY, 4000)

@@ -135,7 +135,7 @@ def test_insertion_and_spiral_are_inverses(film, e, nu):
 
 @pytest.mark.parametrize(("film", "limit"), [("ideal", 90), ("jpl-1978", 55.482498), ("jpl-2015", 58.625497)])
 def test_insertion_ends_at_the_films_largest_cone_angle(film, limit):
-    from sailviz.design.force_shape import force_shape
+    from sailviz.design.displaced.force_shape import force_shape
 
     assert np.degrees(force_shape(film).cone_limit()) == pytest.approx(limit, abs=0.51e-6)
     refused = spirals.insertion(0.0934, deg(80), film)

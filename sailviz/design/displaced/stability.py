@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sailviz.constants import AU
-from sailviz.design.force_shape import force_shape
-from sailviz.design.holding import attitude
+from sailviz.design.displaced.force_shape import force_shape
+from sailviz.design.displaced.holding import attitude
 
 CLOCKS = ("orbital", "meridian")
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from sailviz import frames
 from sailviz.constants import AU
-from sailviz.design.force_shape import force_shape
+from sailviz.design.displaced.force_shape import force_shape
 
 ROUNDING = 1e-12  # relative, by which a cone angle may pass the device's limit
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 
 from sailviz.constants import AU, MU_SUN
-from sailviz.design.force_shape import force_shape
-from sailviz.design.holding import Track, hold_track
+from sailviz.design.displaced.force_shape import force_shape
+from sailviz.design.displaced.holding import Track, hold_track
 
 
 def planet_following(

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sailviz.constants import J2_EARTH, MU_EARTH, RADIUS_EARTH, ROTATION_EARTH
-from sailviz.design.decay_profiles import SPEED_EXPONENT, ForceProfile, constant
+from sailviz.design.decay.profiles import SPEED_EXPONENT, ForceProfile, constant
 
 BRAKE_FLOOR = 200e3  # m, the brake is off below: molecular ions, and drag is stronger anyway
 PANEL = 100e3  # m, longest stretch of altitude under one Gauss-Legendre rule

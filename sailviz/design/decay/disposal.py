@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sailviz.constants import MU_EARTH, RADIUS_EARTH, STANDARD_GRAVITY
-from sailviz.design.decay import BRAKE_FLOOR, decay_time
+from sailviz.design.decay.quasi_circular import BRAKE_FLOOR, decay_time
 from sailviz.propulsion import plasma_brake
 
 

@@ -501,7 +501,7 @@ def _approximations(scene, body, position, velocity, design) -> dict[str, FirstO
             pitch = np.pi / 2
         thrust = (size * np.cos(pitch), size * np.sin(pitch), 0)
     else:
-        from sailviz.design import asymptotic
+        from sailviz.design.asymptotic import solution as asymptotic
 
         shape = "electric-sail" if device.kind == "electric-sail" else film_of(scene)
         thrust = asymptotic.thrust(shape, sail_strength(scene, design), pitch, r0, mu)

@@ -19,7 +19,7 @@ import pytest
 
 from sailviz.steering import attitude as law
 from sailviz.constants import AU, MU_SUN
-from sailviz.design import asymptotic, asymptotic_legs
+from sailviz.design.asymptotic import solution as asymptotic, legs as asymptotic_legs
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
 

@@ -11,8 +11,8 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from sailviz.constants import AU, MU_SUN
-from sailviz.design import asymptotic
-from sailviz.design import asymptotic_integrals as integrals
+from sailviz.design.asymptotic import solution as asymptotic
+from sailviz.design.asymptotic import integrals
 
 TURN = 2 * np.pi
 CASES = {case["id"]: case for case in json.loads(Path(__file__).with_name("reference_asymptotic.json").read_text())}

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
-from sailviz.design import asymptotic_legs as legs_of
+from sailviz.design.asymptotic import legs as legs_of
 from sailviz.design.displaced.force_shape import force_shape
 
 DOUBTFUL = 0.03  # relative error in r from which a result says that it should not be trusted

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sailviz.compiled import called, compiled, inlined
-from sailviz.design.asymptotic_integrals import a_integral, b_integral, eccentric, frozen, s_difference, time_terms
+from sailviz.design.asymptotic.integrals import a_integral, b_integral, eccentric, frozen, s_difference, time_terms
 
 OK, NO_MOMENTUM, ASYMPTOTE, HYPERBOLIC, NO_MASS, TOO_MANY_LEGS = range(6)
 PLAIN, MIDPOINT = 0, 1

@@ -61,7 +61,7 @@ def transfer(
     try:
         _agree(target, radius_au, inclination_deg, orbits, date, window, sails, as_table, output, acceleration)
         from sailviz import transfers
-        from sailviz.design import costates
+        from sailviz.design.minimum_time import costates
 
         _say_if_compiling(costates.propagate_batch, quiet or as_json)
         start = transfers.place(origin)
@@ -181,7 +181,7 @@ def _words(transfers, found):
 
 def _unit(found):
     """The canonical unit of time, d."""
-    from sailviz.design.costates import TIME_UNIT
+    from sailviz.design.minimum_time.costates import TIME_UNIT
 
     radius = found.origin.orbit.semi_major_axis / AU if found.kind == "circles" else 1.0
     return radius**1.5 * TIME_UNIT / DAY

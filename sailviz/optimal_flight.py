@@ -6,7 +6,7 @@ import numpy as np
 
 from sailviz import frames
 from sailviz.constants import MU_SUN
-from sailviz.design.reflight import Solved, from_planar, primer_history
+from sailviz.design.minimum_time.replay import Solved, from_planar, primer_history
 from sailviz.errors import Fault, SceneError
 from sailviz.steering.optimal import optimal_pitch
 

@@ -378,7 +378,7 @@ def _throttled(steering):
 
 def _smoothed_table(scene):
     """The steering table of a smoothed transfer from the start's circle; off once it has arrived."""
-    from sailviz.design.smoothed_transfer import smoothed_transfer
+    from sailviz.design.minimum_time.smoothed import smoothed_transfer
 
     steering, r0, strength = scene.steering, scene.start.radius, sail_strength(scene, None)
     clock = np.sqrt(r0**3 / MU_SUN)

@@ -20,11 +20,11 @@ from sailviz import elements as orbital
 from sailviz import ephemeris
 from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.describe import length
-from sailviz.design import costates, reflight
-from sailviz.design.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
-from sailviz.design.minimum_time import Transfer, circle_to_circle
-from sailviz.design.rendezvous import Rendezvous, rendezvous
-from sailviz.design.transfers import OrbitTransfer, orbit_to_orbit
+from sailviz.design.minimum_time import costates, replay as reflight
+from sailviz.design.minimum_time.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
+from sailviz.design.minimum_time.circles import Transfer, circle_to_circle
+from sailviz.design.minimum_time.rendezvous import Rendezvous, rendezvous
+from sailviz.design.minimum_time.orbits import OrbitTransfer, orbit_to_orbit
 from sailviz.elements import Elements
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film

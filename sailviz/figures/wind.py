@@ -6,7 +6,7 @@ import numpy as np
 
 from sailviz.steering import attitude as steering
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN, YEAR
-from sailviz.design.smoothed_transfer import smoothed_transfer
+from sailviz.design.minimum_time.smoothed import smoothed_transfer
 from sailviz.environment.solar_wind import pressure as solar_wind
 from sailviz.environment.solar_wind.laws import Gamma
 from sailviz.propulsion import voltage_control as control

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from sailviz.constants import AU, DAY
-from sailviz.design.minimum_time import circle_to_circle
+from sailviz.design.minimum_time.circles import circle_to_circle
 
 ROWS = json.loads((Path(__file__).parents[1] / "design" / "reference_transfers.json").read_text())
 DEVICES = {

@@ -10,8 +10,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from sailviz.constants import DAY
-from sailviz.design import costates
-from sailviz.design.costates import TIME_UNIT, canonical_sail
+from sailviz.design.minimum_time import costates
+from sailviz.design.minimum_time.costates import TIME_UNIT, canonical_sail
 
 SAILS = ("ideal", "jpl-1978", "jpl-2015", "eta-perfect", "electric-sail")
 SAILS += ("electric-sail-original", "electric-sail-updated", "electric-sail-polynomial")

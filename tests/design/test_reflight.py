@@ -11,8 +11,8 @@ from scipy.interpolate import CubicHermiteSpline
 
 from sailviz.steering import attitude as law
 from sailviz.constants import AU, DAY, MU_SUN
-from sailviz.design import costates, reflight
-from sailviz.design.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
+from sailviz.design.minimum_time import costates, replay as reflight
+from sailviz.design.minimum_time.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
 from sailviz.steering.optimal import optimal_pitch
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch

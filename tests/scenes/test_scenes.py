@@ -19,7 +19,7 @@ from scipy.interpolate import CubicSpline, RegularGridInterpolator
 from scipy.optimize import brentq
 
 import sailviz
-from sailviz.design.smoothed_transfer import smoothed_transfer
+from sailviz.design.minimum_time.smoothed import smoothed_transfer
 from sailviz.expectations import check
 from sailviz.scene_sections import SteadyWind
 from sailviz.shipped import shipped_folder, shipped_scenes

@@ -7,7 +7,7 @@ import pytest
 from numba import njit
 
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
-from sailviz.design.smoothed_transfer import smoothed_transfer
+from sailviz.design.minimum_time.smoothed import smoothed_transfer
 from sailviz.uncertainty import control, covariance
 
 TU = np.sqrt(AU**3 / MU_SUN)  # s

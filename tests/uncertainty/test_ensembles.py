@@ -13,7 +13,7 @@ from scipy import stats
 
 from sailviz.steering import attitude as steering
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN
-from sailviz.design.smoothed_transfer import smoothed_transfer
+from sailviz.design.minimum_time.smoothed import smoothed_transfer
 from sailviz.environment.solar_wind.laws import Gamma, Lognormal
 from sailviz.propulsion import voltage_control as control
 from sailviz.propagate import dop853, dynamics

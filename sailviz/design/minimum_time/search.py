@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sailviz.compiled import compiled
-from sailviz.design import shooting
-from sailviz.design.costates import SIZE, propagate_compiled
+from sailviz.design.minimum_time import shooting
+from sailviz.design.minimum_time.costates import SIZE, propagate_compiled
 from sailviz.steering.optimal import optimal_pitch
 
 LOOSE, TIGHT = 1e-9, 1e-13  # integration tolerances

@@ -14,8 +14,8 @@ import numpy as np
 
 from sailviz import frames
 from sailviz.constants import AU
-from sailviz.design import costates
-from sailviz.design.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
+from sailviz.design.minimum_time import costates
+from sailviz.design.minimum_time.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
 from sailviz.steering.optimal import optimal_pitch
 
 FEWEST, MOST = 200, 200_000  # rows of a grid that is halved until it is fine enough

@@ -20,9 +20,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from sailviz.constants import AU, DAY
-from sailviz.design import costates
-from sailviz.design.costates import SPEED_UNIT, TIME_UNIT, Sail, canonical_sail
-from sailviz.design.shooting import solve
+from sailviz.design.minimum_time import costates
+from sailviz.design.minimum_time.costates import SPEED_UNIT, TIME_UNIT, Sail, canonical_sail
+from sailviz.design.minimum_time.shooting import solve
 from sailviz.elements import Elements
 
 STARTS = 24  # departure points tried, evenly around the orbit
@@ -329,7 +329,7 @@ def target_radius(problem):
 
 def planar_guess(problem, device, characteristic_acceleration):
     """Costates (lam_r, lam_u, lam_v) and span of the flight between circles of the mean distances."""
-    from sailviz.design.minimum_time import circle_to_circle
+    from sailviz.design.minimum_time.circles import circle_to_circle
 
     a0, a = problem.origin.semi_major_axis * AU, target_radius(problem) * AU
     found = circle_to_circle(a0, a, device, characteristic_acceleration)

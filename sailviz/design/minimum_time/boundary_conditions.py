@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sailviz.compiled import compiled
-from sailviz.design import costates
-from sailviz.design.costates import Sail
+from sailviz.design.minimum_time import costates
+from sailviz.design.minimum_time.costates import Sail
 from sailviz.steering.optimal import full_thrust, steer
 
 SHORTEST = 1e-3  # flight time of a flight whatever its unknowns say

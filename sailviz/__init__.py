@@ -12,8 +12,8 @@ from functools import cache
 from importlib import import_module
 
 _WHERE = {
-    "load_scene": "sailviz.scene",
-    "Scene": "sailviz.scene",
+    "load_scene": "sailviz.scene.loading",
+    "Scene": "sailviz.scene.loading",
     "simulate": "sailviz.simulation",
     "simulate_blocks": "sailviz.simulation",
     "Run": "sailviz.run.arrays",

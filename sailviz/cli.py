@@ -16,7 +16,7 @@ import click
 from sailviz import cli_figures, cli_pictures, cli_recordings, cli_sweep, cli_transfer
 from sailviz.cli_shared import EXPECTATION_FAILED, collecting_failures, progress_bar, say_if_compiling, set_option, values_of
 from sailviz.errors import PropagationError, RecordingError
-from sailviz.scene import load_scene, schema
+from sailviz.scene.loading import load_scene, schema
 from sailviz.shipped import shipped_scenes
 
 
@@ -58,7 +58,7 @@ def check(scenes, settings):
 @set_option
 def show(scene, settings):
     """Print every value of a scene, defaults included, in SI and in words."""
-    from sailviz.describe import resolved_lines
+    from sailviz.scene.show import resolved_lines
 
     with collecting_failures() as failures, failures.next():
         for line in resolved_lines(load_scene(scene, values_of(settings))):
@@ -187,7 +187,7 @@ def _run_one(name, values, sinks, quiet, failures):
         }
     )
     if not quiet:
-        from sailviz.describe import duration
+        from sailviz.scene.show import duration
 
         end = f", ended by {ended}" if ended else ""
         click.echo(f"{scene.title}: {duration(seconds)}, {rows:,} rows{end}")
@@ -217,7 +217,7 @@ def _rerun() -> str:
 
 
 def _say_unfinished(recorder):
-    from sailviz.describe import duration
+    from sailviz.scene.show import duration
 
     for path in recorder.recorded.paths if recorder.recorded else ():
         click.echo(f"Unfinished: {path} is valid up to {duration(recorder.time)} and says so.", err=True)

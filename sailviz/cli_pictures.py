@@ -152,7 +152,7 @@ def _recording_of(source, settings, quiet):
             raise RecordingError(f"{source} is a recording: --set changes scenes, and this one was flown already")
         yield Path(source)
         return
-    from sailviz.scene import load_scene
+    from sailviz.scene.loading import load_scene
 
     scene = load_scene(source, values_of(settings))
     from sailviz.recording import record

@@ -8,9 +8,9 @@ import numpy as np
 
 from sailviz.closed_forms import FORMS, error
 from sailviz.elements import elements
-from sailviz.quantities import of_cloud, spellings
+from sailviz.scene.quantities import of_cloud, spellings
 from sailviz.run.arrays import Attitude, Run, Thrust
-from sailviz.scene import Expectation, Scene
+from sailviz.scene.loading import Expectation, Scene
 
 
 @dataclass(frozen=True)

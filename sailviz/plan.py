@@ -31,8 +31,8 @@ from sailviz.propulsion import electric_sail
 from sailviz.propulsion.devices import sail
 from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.run.arrays import Body
-from sailviz.scene import Scene
-from sailviz.scene_sections import HELD_STARTS
+from sailviz.scene.loading import Scene
+from sailviz.scene.sections import HELD_STARTS
 from sailviz.schedule import Schedule, schedule
 
 if TYPE_CHECKING:

@@ -95,7 +95,7 @@ class Regression:
         """A scene is run, everything else is taken as it is."""
         if isinstance(source, str | os.PathLike) and Path(source).suffix in (".rrd", ".npz"):
             return source
-        from sailviz.scene import Scene, load_scene
+        from sailviz.scene.loading import Scene, load_scene
 
         if isinstance(source, str | os.PathLike):
             source = load_scene(source)

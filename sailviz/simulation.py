@@ -15,7 +15,7 @@ from sailviz.plan import Plan, plan
 from sailviz.propagate import dop853, dynamics, gauss_jackson, stepping as integration
 from sailviz.propagate.choice import DOP853, GAUSS_JACKSON
 from sailviz.run.arrays import Attitude, Event, Run, Thrust, join
-from sailviz.scene import Scene
+from sailviz.scene.loading import Scene
 from sailviz.setting import bodies, planets_in_view, setting_of
 
 BLOCK_ROWS = 16_384  # a recording takes this many at once

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 
-from sailviz.scene_faults import nearest
+from sailviz.scene.faults import nearest
 from sailviz.sweep_store import SweepError
 
 ENGINES = ("processes", "threads", "serial", "dask")

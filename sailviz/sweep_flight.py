@@ -8,7 +8,7 @@ import time
 
 import sailviz
 from sailviz.errors import PropagationError, SailvizError, SceneError
-from sailviz.scene import Scene
+from sailviz.scene.loading import Scene
 from sailviz.sweep_definition import Definition
 
 OK, FAILED = "ok", "failed"

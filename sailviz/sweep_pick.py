@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from sailviz.errors import Fault, PropagationError, SceneError
-from sailviz.scene_faults import nearest
+from sailviz.scene.faults import nearest
 from sailviz.sweep_definition import Definition
 from sailviz.sweep_flight import FAILED, schema_of
 

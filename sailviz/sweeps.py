@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from sailviz.scene import Scene
+from sailviz.scene.loading import Scene
 from sailviz.sweep_definition import Definition, define
 from sailviz.sweep_engines import abandon, check_engine, engine, processes, workers_of
 from sailviz.sweep_flight import DIED, blank, fly

@@ -12,7 +12,7 @@ from sailviz.elements import state
 from sailviz.errors import SceneError
 from sailviz.expectations import Judge, Verdict, check, table
 from sailviz.recording.rows import take
-from sailviz.scene import Expectation
+from sailviz.scene.loading import Expectation
 from sailviz.run.from_arrays import trajectory
 
 

@@ -18,7 +18,7 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 import pyarrow as pa
 
-from sailviz.describe import duration
+from sailviz.scene.show import duration
 from sailviz.errors import RecordingError
 from sailviz.run import resample
 from sailviz.recording.evidence import Evidence, Table, evidence

@@ -59,7 +59,7 @@ def gallery(folder, names=(), *, size=SIZE, progress=None) -> dict[str, Path]:
     complains, and as `picture` does.
     """
     from sailviz.recording.write import record
-    from sailviz.scene import load_scene
+    from sailviz.scene.loading import load_scene
     from sailviz.simulation import simulate_blocks
 
     check_vulkan()
@@ -117,7 +117,7 @@ def squeezed(png: bytes, largest: int = LARGEST) -> bytes:
 
 def markdown(pictures: dict[str, Path]) -> str:
     """A table of the pictures, each with the title of its scene and linked to its file."""
-    from sailviz.scene import load_scene
+    from sailviz.scene.loading import load_scene
 
     cells = [
         f"[![{load_scene(name).title}]({path.as_posix()})](scenes/{name}.toml)<br>{load_scene(name).title}"

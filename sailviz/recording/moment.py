@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from sailviz.describe import duration
+from sailviz.scene.show import duration
 from sailviz.errors import RecordingError
 from sailviz.recording.reader import read
 from sailviz.units import UNITS

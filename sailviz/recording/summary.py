@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pyarrow as pa
 
-from sailviz.describe import duration
+from sailviz.scene.show import duration
 from sailviz.recording.evidence import epoch_of, innermost, truth_of, views_of
 from sailviz.recording.reader import Entity, Recording, is_component, read, short
 

@@ -9,7 +9,7 @@ from PIL import Image
 from sailviz import compare
 from sailviz.constants import ROTATION_EARTH
 from sailviz.frames import rtn, unit
-from sailviz.quantities import spellings
+from sailviz.scene.quantities import spellings
 from sailviz.recording import digest, drawing, export, layout, plane, read, record
 from sailviz.recording.curves import Curves
 from sailviz.recording.plots import plots_of

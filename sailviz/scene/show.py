@@ -119,7 +119,7 @@ _WORDS = {"length": length, "time": duration, "angle": angle, "acceleration": ac
 
 def resolved_lines(scene) -> list[str]:
     """Every value of a scene, defaults included: path = SI value, and in words where that reads better."""
-    from sailviz.scene_faults import _inside
+    from sailviz.scene.faults import _inside
 
     lines = []
 

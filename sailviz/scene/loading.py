@@ -18,9 +18,9 @@ from pydantic import Field, PrivateAttr
 from pydantic_core import ValidationError
 
 from sailviz.errors import SceneError
-from sailviz.scene_conflicts import conflicts
-from sailviz.scene_faults import convert, faults_of, locate, nearest
-from sailviz.scene_sections import Approximation, Chaos, CustomBody, Devices, Ensemble, Environment, Expectation, Propagation, Recording, Section, Start, Steering, Target, Watched
+from sailviz.scene.conflicts import conflicts
+from sailviz.scene.faults import convert, faults_of, locate, nearest
+from sailviz.scene.sections import Approximation, Chaos, CustomBody, Devices, Ensemble, Environment, Expectation, Propagation, Recording, Section, Start, Steering, Target, Watched
 from sailviz.shipped import shipped_scenes
 
 
@@ -200,6 +200,6 @@ def _validated(raw: dict, text: str, source: str) -> Scene:
 @cache
 def schema() -> dict:
     """JSON Schema of the scene file, every spelling of every quantity included, for editors and other tools."""
-    from sailviz.scene_faults import with_units
+    from sailviz.scene.faults import with_units
 
     return with_units(Scene.model_json_schema())

@@ -11,7 +11,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
-from sailviz.scene_faults import Dimension, nearest
+from sailviz.scene.faults import Dimension, nearest
 
 # ---------------------------------------------------------------- kinds of values: SI inside, unit in the key outside
 Length = Annotated[float, Dimension("length")]
@@ -841,7 +841,7 @@ class Expectation(Section):
 
     @model_validator(mode="after")
     def _known(self):
-        from sailviz.quantities import spellings
+        from sailviz.scene.quantities import spellings
 
         if self.quantity not in spellings():
             raise _wrong(f'unknown quantity "{self.quantity}". {nearest(self.quantity, spellings())}')

@@ -6,11 +6,11 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from sailviz.constants import RADIUS_EARTH
-from sailviz.scene_faults import nearest
-from sailviz.scene_sections import HELD_STARTS, PRIMER_LAWS
+from sailviz.scene.faults import nearest
+from sailviz.scene.sections import HELD_STARTS, PRIMER_LAWS
 
 if TYPE_CHECKING:
-    from sailviz.scene import Scene
+    from sailviz.scene.loading import Scene
 
 LONGEST = 2**63 / 1e9  # s, what 64 bits of nanoseconds reach
 
@@ -141,7 +141,7 @@ def _swarming(scene: Scene) -> list[tuple[str, str]]:
             words = "polynomial chaos knows one gamma-distributed pressure for a whole flight"
             place = f"chaos[{i}].solar_wind" if item.solar_wind else "environment.solar_wind"
             found.append((place, f'{words}: kind = "gamma", variation = "constant"'))
-    from sailviz.quantities import MEANS, PLACES, spellings
+    from sailviz.scene.quantities import MEANS, PLACES, spellings
 
     known = {item.name for _, item in swarms}
     for i, expected in enumerate(scene.expect):

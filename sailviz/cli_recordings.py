@@ -78,7 +78,7 @@ def compare(a, b, atol, rtol, on, no_picture, as_json, quiet):
     Prints the largest difference of every quantity, where and when. Without --atol a quantity may differ by 1e-9 of its
     largest value. Exit code 0: equal, 1: different, 2: unreadable.
     """
-    from sailviz.recording.comparison import compare as compared
+    from sailviz.recording.comparison.compare import compare as compared
 
     with _one_sentence():
         found = compared(
@@ -112,7 +112,7 @@ def _tolerances(given, option) -> dict[str, float]:
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 def digest(files):
     """Print a hash of what recordings hold: equal for equal contents, whenever and however they were written."""
-    from sailviz.recording.fingerprint import digest as digest_of
+    from sailviz.recording.comparison.digest import digest as digest_of
 
     with _one_sentence():
         for file in files:

@@ -14,8 +14,8 @@ import numpy as np
 
 from sailviz.errors import RecordingError
 from sailviz.run import resample
-from sailviz.recording.comparison import Comparison, compare, default_tolerance
-from sailviz.recording.evidence import Evidence, evidence
+from sailviz.recording.comparison.compare import Comparison, compare, default_tolerance
+from sailviz.recording.comparison.tables import Evidence, evidence
 from sailviz.recording.exporter import _atomic, _write_npz, arrays
 from sailviz.run.arrays import Run
 

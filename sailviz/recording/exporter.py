@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow as pa
 
 from sailviz.errors import RecordingError
-from sailviz.recording.evidence import Evidence, Table, evidence
+from sailviz.recording.comparison.tables import Evidence, Table, evidence
 
 FORMATS = ("csv", "parquet", "npz", "oem")
 FEW = 5  # rows of an entity that stands on other rows than the truth, where only a part of those is wanted

@@ -8,7 +8,7 @@ import numpy as np
 import pyarrow as pa
 
 from sailviz.scene.show import duration
-from sailviz.recording.evidence import epoch_of, innermost, truth_of, views_of
+from sailviz.recording.comparison.tables import epoch_of, innermost, truth_of, views_of
 from sailviz.recording.reader import Entity, Recording, is_component, read, short
 
 

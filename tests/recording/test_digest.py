@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from sailviz.recording import Memory, digest, record
-from sailviz.recording.fingerprint import digest_by_entity
+from sailviz.recording.comparison.digest import digest_by_entity
 from sailviz.recording.rows import take
 
 

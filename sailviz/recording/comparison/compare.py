@@ -21,7 +21,7 @@ import pyarrow as pa
 from sailviz.scene.show import duration
 from sailviz.errors import RecordingError
 from sailviz.run import resample
-from sailviz.recording.evidence import Evidence, Table, evidence
+from sailviz.recording.comparison.tables import Evidence, Table, evidence
 from sailviz.recording.reader import is_component
 
 RELATIVE = 1e-9  # default tolerance: this part of the column's largest value

@@ -26,7 +26,7 @@ _WHERE = {
     "sweep": "sailviz.sweeps",
     "Sweep": "sailviz.sweeps",
     "export": "sailviz.recording.exporter",
-    "show": "sailviz.recording.notebook",
+    "show": "sailviz.recording.views.notebook",
     "SweepError": "sailviz.sweep_store",
     "SceneError": "sailviz.errors",
     "PropagationError": "sailviz.errors",

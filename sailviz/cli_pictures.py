@@ -72,9 +72,9 @@ def picture(sources, output, view, at, size, bare, film, seconds, fps, quiet, se
 
 def _check_before(at, film) -> None:
     """Everything that can be known to fail before a scene is simulated."""
-    from sailviz.recording.moment import moment
-    from sailviz.recording.movie import check_format
-    from sailviz.recording.shot import check_vulkan
+    from sailviz.recording.views.instant import moment
+    from sailviz.recording.views.movie import check_format
+    from sailviz.recording.views.screenshot import check_vulkan
 
     check_vulkan()
     moment(at)
@@ -109,9 +109,9 @@ def _make(folder: Path) -> None:
 def _shoot(path, out, view, at, size, bare):
     from dataclasses import replace
 
-    from sailviz.recording.moment import fraction_of
-    from sailviz.recording.movie import written_whole
-    from sailviz.recording.shot import picture
+    from sailviz.recording.views.instant import fraction_of
+    from sailviz.recording.views.movie import written_whole
+    from sailviz.recording.views.screenshot import picture
 
     at = fraction_of(path, at)
     with written_whole(out) as part:
@@ -120,7 +120,7 @@ def _shoot(path, out, view, at, size, bare):
 
 
 def _film(path, out, source, view, size, seconds, fps, quiet):
-    from sailviz.recording.movie import make_movie
+    from sailviz.recording.views.movie import make_movie
 
     with progress_bar(f"Movie of {source}", quiet) as progress:
         return make_movie(path, out, view=view, size=size, seconds=seconds, fps=fps, progress=progress)
@@ -173,7 +173,7 @@ def _recording_of(source, settings, quiet):
 @click.option("--data-port", default=0, help="Of the recordings; a free one by default.")
 def web(files, no_open, port, data_port):
     """Show recordings in a browser on this machine; works offline. Ctrl-C ends it."""
-    from sailviz.recording.viewers import serve
+    from sailviz.recording.views.viewers import serve
 
     def started(url):
         click.echo(url)
@@ -191,7 +191,7 @@ def web(files, no_open, port, data_port):
 @click.argument("files", nargs=-1, required=True, metavar="FILE...")
 def view(files):
     """Open recordings in the native viewer."""
-    from sailviz.recording.viewers import open_viewer
+    from sailviz.recording.views.viewers import open_viewer
 
     with collecting_failures() as failures, failures.next():
         open_viewer(*files)

@@ -31,8 +31,8 @@ def _one_sentence():
 @click.option("--json", "as_json", is_flag=True, help="Print what a script can read.")
 def info(files, as_json):
     """Say what recordings are: scene, span, columns, versions, events, expectations."""
-    from sailviz.recording.summary import in_words
-    from sailviz.recording.summary import info as facts_of
+    from sailviz.recording.views.info import in_words
+    from sailviz.recording.views.info import info as facts_of
 
     with _one_sentence():
         facts = [facts_of(file) for file in files]

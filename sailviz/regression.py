@@ -171,7 +171,7 @@ def _number(value: float) -> str:
 
 def _pictures(folder: Path) -> str:
     """Pictures of the same rows of both, where there is Vulkan -> what to say about them."""
-    from sailviz.recording.shot import has_vulkan, picture
+    from sailviz.recording.views.screenshot import has_vulkan, picture
 
     if not has_vulkan():
         return "; no pictures, for want of Vulkan"

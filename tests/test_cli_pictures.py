@@ -5,8 +5,8 @@ from click.testing import CliRunner
 from PIL import Image
 
 from sailviz.cli import main
-from sailviz.recording import shot
-from sailviz.recording.shot import has_vulkan
+from sailviz.recording.views import screenshot as shot
+from sailviz.recording.views.screenshot import has_vulkan
 
 SHORT = ("--set", "propagation.duration_d=30", "--set", "propagation.outputs=20", "--set", "expect=[]")
 SMALL = ("--size", "320x200", "--view", "System")

@@ -129,7 +129,7 @@ def test_a_broken_baseline_is_refused_in_one_sentence(project, pytester):
 
 
 def test_pictures_of_both_are_left_where_there_is_vulkan(project, pytester):
-    from sailviz.recording.shot import has_vulkan
+    from sailviz.recording.views.screenshot import has_vulkan
 
     if not has_vulkan():
         pytest.skip("no Vulkan driver: apt-get install libvulkan1 mesa-vulkan-drivers")

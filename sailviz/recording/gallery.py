@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from sailviz.errors import RecordingError
-from sailviz.recording.movie import palette_of, written_whole
-from sailviz.recording.shot import FRAME, Studio, check_vulkan
+from sailviz.recording.views.movie import palette_of, written_whole
+from sailviz.recording.views.screenshot import FRAME, Studio, check_vulkan
 from sailviz.shipped import shipped_scenes
 
 SIZE = (1280, 720)

@@ -10,7 +10,7 @@ from sailviz.constants import AU, DAY
 from sailviz.errors import SceneError
 from sailviz.recording import digest, export, read, record
 from sailviz.recording.clouds import RING, SIGMAS, ellipses, spread
-from sailviz.recording.summary import info
+from sailviz.recording.views.info import info
 from sailviz.simulation import simulate
 from sailviz.uncertainty.covariance import linear
 from sailviz.uncertainty.ensembles import fly_factors

@@ -7,7 +7,7 @@ from PIL import Image
 
 from sailviz.cli import main
 from sailviz.recording.gallery import POSES, Pose, file_names, gallery, markdown, pose_of, squeezed
-from sailviz.recording.shot import has_vulkan
+from sailviz.recording.views.screenshot import has_vulkan
 from sailviz.shipped import shipped_scenes
 
 

@@ -15,7 +15,7 @@ from sailviz.recording.curves import Curves
 from sailviz.recording.plots import plots_of
 from sailviz.recording.rows import Picker, take
 from sailviz.recording.samples import Frame, Samples, orbits, rings
-from sailviz.recording.shot import Studio, has_vulkan
+from sailviz.recording.views.screenshot import Studio, has_vulkan
 from sailviz.run.arrays import Shell
 
 DAY = 86_400.0

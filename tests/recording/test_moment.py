@@ -5,7 +5,7 @@ import pytest
 
 from sailviz.errors import RecordingError
 from sailviz.recording import record
-from sailviz.recording.moment import fraction_of, moment
+from sailviz.recording.views.instant import fraction_of, moment
 
 DAY = 86_400.0
 

@@ -8,8 +8,8 @@ from PIL import Image, ImageSequence
 
 from sailviz.errors import RecordingError
 from sailviz.recording import make_movie, record
-from sailviz.recording.movie import gif, mp4, webp, written_whole
-from sailviz.recording.shot import has_vulkan
+from sailviz.recording.views.movie import gif, mp4, webp, written_whole
+from sailviz.recording.views.screenshot import has_vulkan
 
 needs_vulkan = pytest.mark.skipif(
     not has_vulkan(), reason="no Vulkan driver: apt-get install libvulkan1 mesa-vulkan-drivers"

@@ -9,7 +9,7 @@ from PIL import Image
 from sailviz.errors import RecordingError
 from sailviz.recording import picture, record
 from sailviz.recording.look import BACKGROUND
-from sailviz.recording.shot import Studio, has_vulkan
+from sailviz.recording.views.screenshot import Studio, has_vulkan
 
 pytestmark = pytest.mark.skipif(
     not has_vulkan(), reason="no Vulkan driver: apt-get install libvulkan1 mesa-vulkan-drivers"

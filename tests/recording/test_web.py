@@ -20,9 +20,9 @@ from sailviz.cli import main
 from sailviz.errors import RecordingError
 from sailviz.recording import record
 from sailviz.recording.look import TARGET
-from sailviz.recording.shot import has_vulkan
+from sailviz.recording.views.screenshot import has_vulkan
 from sailviz.recording.sinks import viewer_binary
-from sailviz.recording.viewers import WebServer, end, free_port, open_viewer
+from sailviz.recording.views.viewers import WebServer, end, free_port, open_viewer
 
 BROWSER, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 PATIENCE = 75.0  # s for a browser without a graphics card

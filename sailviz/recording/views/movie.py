@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from sailviz.errors import RecordingError
-from sailviz.recording.moment import fraction_of
-from sailviz.recording.shot import FRAME, Studio
+from sailviz.recording.views.instant import fraction_of
+from sailviz.recording.views.screenshot import FRAME, Studio
 
 MOST_FRAMES = 3000
 AGREE = 2  # pictures in a row that must be the same, after the first: the viewer has loaded everything by then

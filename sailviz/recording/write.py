@@ -18,7 +18,7 @@ from rerun.error_utils import catch_and_log_exceptions
 
 from sailviz.errors import PropagationError, RecordingError
 from sailviz.recording import rows, truth
-from sailviz.recording.drawing import Drawing
+from sailviz.recording.drawing.drawing import Drawing
 from sailviz.recording.sinks import File, Memory, Web, attach, discard, resolve, web_address
 from sailviz.run.arrays import Event, Run
 

@@ -134,7 +134,7 @@ def test_a_missing_an_added_and_a_shifted_event_are_found(runs, recorded):
 
 
 def test_a_lost_view_is_found(runs, recorded, monkeypatch):
-    import sailviz.recording.layout as layout
+    import sailviz.recording.drawing.layout as layout
 
     run = runs.displaced(rows=60)
     before = recorded(run)

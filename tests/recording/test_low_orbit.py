@@ -10,11 +10,12 @@ from sailviz import compare
 from sailviz.constants import ROTATION_EARTH
 from sailviz.frames import rtn, unit
 from sailviz.scene.quantities import spellings
-from sailviz.recording import digest, drawing, export, layout, plane, read, record
-from sailviz.recording.curves import Curves
-from sailviz.recording.plots import plots_of
+from sailviz.recording import digest, export, read, record
+from sailviz.recording.drawing import drawing, layout, orbit_plane as plane
+from sailviz.recording.drawing.curves import Curves
+from sailviz.recording.drawing.plots import plots_of
 from sailviz.recording.rows import Picker, take
-from sailviz.recording.samples import Frame, Samples, orbits, rings
+from sailviz.recording.drawing.samples import Frame, Samples, orbits, rings
 from sailviz.recording.views.screenshot import Studio, has_vulkan
 from sailviz.run.arrays import Shell
 
@@ -311,7 +312,7 @@ def test_a_replay_lasts_as_long_as_asked_for(runs, end, tmp_path, monkeypatch):
 
 
 def layout_blueprint(given):
-    from sailviz.recording.blueprint import blueprint
+    from sailviz.recording.drawing.blueprint import blueprint
 
     return blueprint(given)
 

@@ -8,7 +8,7 @@ from PIL import Image
 
 from sailviz.errors import RecordingError
 from sailviz.recording import picture, record
-from sailviz.recording.look import BACKGROUND
+from sailviz.recording.drawing.style import BACKGROUND
 from sailviz.recording.views.screenshot import Studio, has_vulkan
 
 pytestmark = pytest.mark.skipif(

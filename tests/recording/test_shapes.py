@@ -8,9 +8,9 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sailviz.recording import cameras, meshes
-from sailviz.recording.plots import nice_range
-from sailviz.recording.samples import smooth_lines
+from sailviz.recording.drawing import cameras, meshes
+from sailviz.recording.drawing.plots import nice_range
+from sailviz.recording.drawing.samples import smooth_lines
 
 SHAPES = {
     "box": (meshes.box([1, 2, 3]), 6.0),

@@ -8,9 +8,10 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from sailviz.recording import look, rows
-from sailviz.recording.plots import plots_of
-from sailviz.recording.samples import Frame
+from sailviz.recording.drawing import style as look
+from sailviz.recording import rows
+from sailviz.recording.drawing.plots import plots_of
+from sailviz.recording.drawing.samples import Frame
 from sailviz.run.arrays import Run
 
 PLOT_ROWS = 20_000

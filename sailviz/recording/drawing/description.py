@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sailviz.recording.clouds import legend, scoreboard
+from sailviz.recording.drawing.ensembles import legend, scoreboard
 from sailviz.run.arrays import Event, Setting
 
 

@@ -10,16 +10,16 @@ import numpy as np
 import rerun as rr
 
 from sailviz.recording import rows
-from sailviz.recording.about import about, event_line
-from sailviz.recording.blueprint import blueprint
-from sailviz.recording.closeup import SailCloseUp
-from sailviz.recording.clouds import Clouds
-from sailviz.recording.curves import Curves
-from sailviz.recording.layout import Extents, Layout, lay_out
-from sailviz.recording.pen import Pen
-from sailviz.recording.samples import Frame, Samples
-from sailviz.recording.tether import TetherCloseUp
-from sailviz.recording.world import LADDER, STRIP, World
+from sailviz.recording.drawing.description import about, event_line
+from sailviz.recording.drawing.blueprint import blueprint
+from sailviz.recording.drawing.sail_close_up import SailCloseUp
+from sailviz.recording.drawing.ensembles import Clouds
+from sailviz.recording.drawing.curves import Curves
+from sailviz.recording.drawing.layout import Extents, Layout, lay_out
+from sailviz.recording.drawing.log import Pen
+from sailviz.recording.drawing.samples import Frame, Samples
+from sailviz.recording.drawing.tether_close_up import TetherCloseUp
+from sailviz.recording.drawing.system_view import LADDER, STRIP, World
 from sailviz.run.arrays import Event, Run, Setting, join
 
 

@@ -10,10 +10,10 @@ import numpy as np
 import rerun as rr
 
 from sailviz.frames import quaternion, to_frame, unit
-from sailviz.recording import look, meshes
-from sailviz.recording.look import points
-from sailviz.recording.pen import Pen, f4
-from sailviz.recording.samples import Frame, Samples, rings
+from sailviz.recording.drawing import style as look, meshes
+from sailviz.recording.drawing.style import points
+from sailviz.recording.drawing.log import Pen, f4
+from sailviz.recording.drawing.samples import Frame, Samples, rings
 from sailviz.recording.truth import word
 from sailviz.run.arrays import Run, Shell
 

@@ -12,13 +12,13 @@ import numpy as np
 import rerun as rr
 
 from sailviz.frames import body_axes, from_frame, quaternion, unit
-from sailviz.recording import craft, look, meshes
-from sailviz.recording.layout import Layout
-from sailviz.recording.look import points
-from sailviz.recording.pen import Pen, f4
-from sailviz.recording.plane import OrbitPlane, notes
-from sailviz.recording.planet import Planet
-from sailviz.recording.samples import PLANE_TURNS, SPARSE, Frame, Samples, arc, orbits, smooth_lines
+from sailviz.recording.drawing import craft, style as look, meshes
+from sailviz.recording.drawing.layout import Layout
+from sailviz.recording.drawing.style import points
+from sailviz.recording.drawing.log import Pen, f4
+from sailviz.recording.drawing.orbit_plane import OrbitPlane, notes
+from sailviz.recording.drawing.planet import Planet
+from sailviz.recording.drawing.samples import PLANE_TURNS, SPARSE, Frame, Samples, arc, orbits, smooth_lines
 from sailviz.recording.truth import word
 from sailviz.run.arrays import Reference, Run
 

@@ -10,12 +10,12 @@ import numpy as np
 import rerun as rr
 
 from sailviz.frames import body_axes, quaternion, unit
-from sailviz.recording import craft, look
-from sailviz.recording.layout import Layout
-from sailviz.recording.look import points
-from sailviz.recording.pen import Pen, f4
-from sailviz.recording.samples import Samples
-from sailviz.recording.world import draw_stars
+from sailviz.recording.drawing import craft, style as look
+from sailviz.recording.drawing.layout import Layout
+from sailviz.recording.drawing.style import points
+from sailviz.recording.drawing.log import Pen, f4
+from sailviz.recording.drawing.samples import Samples
+from sailviz.recording.drawing.system_view import draw_stars
 from sailviz.run.arrays import Run
 
 SIZE = {"solar-sail": 15.0, "electric-sail": 9.0, "thruster": 8.0, "none": 1.0}

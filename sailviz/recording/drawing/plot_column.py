@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from sailviz.recording.curves import Curves
-from sailviz.recording.plots import nice_range
-from sailviz.recording.samples import Frame
+from sailviz.recording.drawing.curves import Curves
+from sailviz.recording.drawing.plots import nice_range
+from sailviz.recording.drawing.samples import Frame
 
 ALWAYS = ("distance", "altitude", "inclination", "eccentricity", "angles", "clock", "thrust")
 ALWAYS = tuple(f"/plots/{name}" for name in ALWAYS)

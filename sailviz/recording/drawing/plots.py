@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailviz.recording import look
-from sailviz.recording.samples import Frame
+from sailviz.recording.drawing import style as look
+from sailviz.recording.drawing.samples import Frame
 from sailviz.run.arrays import Run
 
 

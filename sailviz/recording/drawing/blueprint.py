@@ -7,10 +7,10 @@ import rerun.blueprint as rrb
 from rerun.blueprint.archetypes import PlotBackground, TextLogColumns
 from rerun.blueprint.encodings import TextLogColumn, TextLogColumnKind, TimelineColumn
 
-from sailviz.recording.clouds import BOX, Arrival
-from sailviz.recording.layout import DESCENT, TUBE, Camera, Layout
-from sailviz.recording.look import BACKGROUND
-from sailviz.recording.slots import PlotView
+from sailviz.recording.drawing.ensembles import BOX, Arrival
+from sailviz.recording.drawing.layout import DESCENT, TUBE, Camera, Layout
+from sailviz.recording.drawing.style import BACKGROUND
+from sailviz.recording.drawing.plot_column import PlotView
 
 ENDLESS = rrb.TimeRangeBoundary.infinite()
 NOW = rrb.TimeRangeBoundary.cursor_relative()

@@ -7,11 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sailviz.frames import unit
-from sailviz.recording import cameras, look, rows
-from sailviz.recording.clouds import Arrival, arrivals_of, slots_of
-from sailviz.recording.curves import Curves
-from sailviz.recording.samples import PLANE_TURNS, Frame, Samples
-from sailviz.recording.slots import Slot, column, plot_views
+from sailviz.recording.drawing import cameras, style as look
+from sailviz.recording import rows
+from sailviz.recording.drawing.ensembles import Arrival, arrivals_of, slots_of
+from sailviz.recording.drawing.curves import Curves
+from sailviz.recording.drawing.samples import PLANE_TURNS, Frame, Samples
+from sailviz.recording.drawing.plot_column import Slot, column, plot_views
 from sailviz.recording.truth import word
 from sailviz.run.arrays import Run, Setting
 

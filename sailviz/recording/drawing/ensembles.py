@@ -13,12 +13,13 @@ import numpy as np
 import rerun as rr
 
 from sailviz.constants import AU
-from sailviz.recording import look, rows, truth
-from sailviz.recording.look import points
-from sailviz.recording.pen import Pen, f4
-from sailviz.recording.plots import nice_range
-from sailviz.recording.samples import Frame
-from sailviz.recording.slots import PlotView, Slot
+from sailviz.recording.drawing import style as look
+from sailviz.recording import rows, truth
+from sailviz.recording.drawing.style import points
+from sailviz.recording.drawing.log import Pen, f4
+from sailviz.recording.drawing.plots import nice_range
+from sailviz.recording.drawing.samples import Frame
+from sailviz.recording.drawing.plot_column import PlotView, Slot
 from sailviz.recording.truth import word
 from sailviz.run.arrays import Cloud, Setting
 

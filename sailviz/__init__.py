@@ -25,7 +25,7 @@ _WHERE = {
     "Comparison": "sailviz.recording.comparison.compare",
     "sweep": "sailviz.sweeps",
     "Sweep": "sailviz.sweeps",
-    "export": "sailviz.recording.exporter",
+    "export": "sailviz.recording.exports",
     "show": "sailviz.recording.views.notebook",
     "SweepError": "sailviz.sweep_store",
     "SceneError": "sailviz.errors",

@@ -54,7 +54,7 @@ def info(files, as_json):
 @click.option("--frame", default="", help="Frame of an OEM: EME2000, or ECLIPJ2000 for what circles the Sun.")
 def export(file, form, output, entities, frame):
     """Write a recording as CSV, Parquet, numpy archive (npz) or orbit ephemeris message (oem)."""
-    from sailviz.recording.exporter import export as write
+    from sailviz.recording.exports import export as write
 
     with _one_sentence():
         for path in write(file, output, form or "", entities=entities, frame=frame):

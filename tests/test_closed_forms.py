@@ -11,7 +11,7 @@ from sailviz.constants import AU, MU_SUN
 from sailviz.elements import state
 from sailviz.errors import SceneError
 from sailviz.expectations import Judge, Verdict, check, table
-from sailviz.recording.rows import take
+from sailviz.recording.timelines import take
 from sailviz.scene.loading import Expectation
 from sailviz.run.from_arrays import trajectory
 

@@ -76,7 +76,7 @@ def test_words_of_a_scene_cannot_become_markup(run):
 
 
 def test_a_block_says_where_it_begins(run):
-    from sailviz.recording.rows import take
+    from sailviz.recording.timelines import take
 
     part = take(run, slice(10, 11))
     assert "1 row over 0 s from" in " ".join(Words(part._repr_html_()).words)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-import sailviz.recording.write  # once out here, or every inner run would import rerun anew
+import sailviz.recording.writer  # once out here, or every inner run would import rerun anew
 import sailviz.regression
 import sailviz.run.from_arrays  # noqa: F401
 

@@ -58,7 +58,7 @@ def gallery(folder, names=(), *, size=SIZE, progress=None) -> dict[str, Path]:
     """Fly and photograph shipped scenes, all of them unless named -> name: picture. Raises RecordingError where a view
     complains, and as `picture` does.
     """
-    from sailviz.recording.write import record
+    from sailviz.recording.writer import record
     from sailviz.scene.loading import load_scene
     from sailviz.simulation import simulate_blocks
 

@@ -13,7 +13,7 @@ import pytest
 from sailviz.elements import elements, state
 from sailviz.frames import body_axes, from_frame, pitch_cone_clock, quaternion, rtn, to_frame, unit
 from sailviz.recording import record
-from sailviz.recording.rows import take
+from sailviz.recording.timelines import take
 from sailviz.run.arrays import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust
 
 AU = 149_597_870_700.0

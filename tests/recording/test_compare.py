@@ -10,8 +10,8 @@ import sailviz
 from sailviz.errors import RecordingError
 from sailviz.recording import Recorder, compare, export, record
 from sailviz.run.resample import at, cost
-from sailviz.recording.rows import take
-from sailviz.recording.truth import tables
+from sailviz.recording.timelines import take
+from sailviz.recording.contract import tables
 
 COLUMNS = {
     "": ("time", "position", "velocity", "mass"),

@@ -7,7 +7,7 @@ import pytest
 
 from sailviz.recording import Memory, digest, record
 from sailviz.recording.comparison.digest import digest_by_entity
-from sailviz.recording.rows import take
+from sailviz.recording.timelines import take
 
 
 def digest_of(run, path):

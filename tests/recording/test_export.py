@@ -10,7 +10,7 @@ import pytest
 from sailviz.errors import RecordingError
 from sailviz.run.oem import EQUATOR_FROM_ECLIPTIC, read_oem
 from sailviz.recording import export, info, record
-from sailviz.recording.truth import tables
+from sailviz.recording.contract import tables
 
 READERS = {"csv": pyarrow.csv.read_csv, "parquet": pyarrow.parquet.read_table}
 

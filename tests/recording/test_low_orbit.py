@@ -14,7 +14,7 @@ from sailviz.recording import digest, export, read, record
 from sailviz.recording.drawing import drawing, layout, orbit_plane as plane
 from sailviz.recording.drawing.curves import Curves
 from sailviz.recording.drawing.plots import plots_of
-from sailviz.recording.rows import Picker, take
+from sailviz.recording.timelines import Picker, take
 from sailviz.recording.drawing.samples import Frame, Samples, orbits, rings
 from sailviz.recording.views.screenshot import Studio, has_vulkan
 from sailviz.run.arrays import Shell

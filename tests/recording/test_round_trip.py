@@ -7,8 +7,8 @@ import pytest
 
 from sailviz.errors import RecordingError
 from sailviz.recording import Memory, read, record
-from sailviz.recording.rows import take
-from sailviz.recording.truth import tables
+from sailviz.recording.timelines import take
+from sailviz.recording.contract import tables
 
 CONTRACT = {
     "/state": {"time_s", "position_m", "velocity_m_s", "mass_kg"},

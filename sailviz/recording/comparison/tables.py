@@ -66,7 +66,7 @@ def evidence(source, label: str = "") -> Evidence:
 
 
 def of_run(run: Run, label: str) -> Evidence:
-    from sailviz.recording.truth import cloud_path, cloud_table, tables
+    from sailviz.recording.contract import cloud_path, cloud_table, tables
 
     steps = run.first + np.arange(len(run))
     found = {entity: Table(steps, run.time, table) for entity, table in tables(run).items() if table}

@@ -9,7 +9,7 @@ import numpy as np
 import rerun as rr
 
 from sailviz.recording.drawing import style as look
-from sailviz.recording import rows
+from sailviz.recording import timelines as rows
 from sailviz.recording.drawing.plots import plots_of
 from sailviz.recording.drawing.samples import Frame
 from sailviz.run.arrays import Run

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from sailviz.recording import rows
+from sailviz.recording import timelines as rows
 from sailviz.recording.drawing.description import about, event_line
 from sailviz.recording.drawing.blueprint import blueprint
 from sailviz.recording.drawing.sail_close_up import SailCloseUp

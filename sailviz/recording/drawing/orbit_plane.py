@@ -14,7 +14,7 @@ from sailviz.recording.drawing import style as look, meshes
 from sailviz.recording.drawing.style import points
 from sailviz.recording.drawing.log import Pen, f4
 from sailviz.recording.drawing.samples import Frame, Samples, rings
-from sailviz.recording.truth import word
+from sailviz.recording.contract import word
 from sailviz.run.arrays import Run, Shell
 
 CIRCLE = 361  # points

@@ -11,7 +11,7 @@ import numpy as np
 from sailviz.constants import AU, ROTATION_EARTH
 from sailviz.elements import Elements, state
 from sailviz.frames import quaternion, rtn, to_frame, unit
-from sailviz.recording import rows
+from sailviz.recording import timelines as rows
 from sailviz.run.arrays import Run, Setting
 
 PICTURE_ROWS = 3000  # as many as a replay of 40 s has frames, and then some

@@ -19,7 +19,7 @@ from sailviz.recording.drawing.log import Pen, f4
 from sailviz.recording.drawing.orbit_plane import OrbitPlane, notes
 from sailviz.recording.drawing.planet import Planet
 from sailviz.recording.drawing.samples import PLANE_TURNS, SPARSE, Frame, Samples, arc, orbits, smooth_lines
-from sailviz.recording.truth import word
+from sailviz.recording.contract import word
 from sailviz.run.arrays import Reference, Run
 
 STRIP = 4  # drawn rows in one piece of the trail

@@ -44,7 +44,7 @@ def as_bytes(source) -> bytes:
     """A recording as it would be in a file."""
     if isinstance(source, Run):
         from sailviz.recording.sinks import Memory
-        from sailviz.recording.write import record
+        from sailviz.recording.writer import record
 
         memory = Memory()
         record(source, memory)

@@ -14,8 +14,8 @@ from importlib import import_module
 _WHERE = {
     "load_scene": "sailviz.scene.loading",
     "Scene": "sailviz.scene.loading",
-    "simulate": "sailviz.simulation",
-    "simulate_blocks": "sailviz.simulation",
+    "simulate": "sailviz.simulation.loop",
+    "simulate_blocks": "sailviz.simulation.loop",
     "Run": "sailviz.run.arrays",
     "record": "sailviz.recording",
     "record_trajectory": "sailviz.run.from_arrays",

@@ -140,7 +140,7 @@ def _open(sinks):
 def _run_one(name, values, sinks, quiet, failures):
     scene = load_scene(name, values)
     from sailviz.expectations import Judge, table
-    from sailviz.simulation import simulate_blocks
+    from sailviz.simulation.loop import simulate_blocks
 
     say_if_compiling(quiet)
     judge = Judge(scene)

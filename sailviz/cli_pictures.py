@@ -156,7 +156,7 @@ def _recording_of(source, settings, quiet):
 
     scene = load_scene(source, values_of(settings))
     from sailviz.recording import record
-    from sailviz.simulation import simulate_blocks
+    from sailviz.simulation.loop import simulate_blocks
 
     say_if_compiling(quiet)
     with tempfile.TemporaryDirectory(prefix="sailviz-") as folder:

@@ -101,7 +101,7 @@ class Regression:
             source = load_scene(source)
         if not isinstance(source, Scene):
             return source
-        from sailviz.simulation import simulate
+        from sailviz.simulation.loop import simulate
 
         return simulate(source.with_values(values) if values else source)
 

@@ -88,7 +88,7 @@ def _row(definition: Definition, scene: Scene, flight: int) -> dict:
 
 def _measured(definition: Definition, scene: Scene, flown: list) -> dict:
     from sailviz.expectations import Judge
-    from sailviz.simulation import simulate_blocks
+    from sailviz.simulation.loop import simulate_blocks
 
     reported = definition.reported()
     judge = Judge(scene.model_copy(update={"expect": [*scene.expect, *reported]}))

@@ -68,7 +68,7 @@ def record_picked(definition: Definition, picks, store) -> dict[int, Path]:
     """Fly the picked flights once more, in this process, and record each as NAME-NUMBER.rrd beside the table. A flight
     that broke down is recorded as far as it came, one that never began not at all."""
     from sailviz.recording import record
-    from sailviz.simulation import simulate_blocks
+    from sailviz.simulation.loop import simulate_blocks
 
     digits = len(str(definition.flights - 1))
     scene, written = definition.scene(), {}

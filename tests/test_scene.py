@@ -15,7 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sailviz.errors import SceneError
-from sailviz.plan import plan
+from sailviz.simulation.plan import plan
 from sailviz.scene.loading import load_scene, schema
 from sailviz.shipped import shipped_scenes
 from sailviz.units import UNITS

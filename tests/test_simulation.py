@@ -11,7 +11,7 @@ from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.errors import PropagationError, SceneError
 from sailviz.propagate.callbacks import USER_SIGNATURE
 from sailviz.run.arrays import join
-from sailviz.simulation import simulate, simulate_blocks
+from sailviz.simulation.loop import simulate, simulate_blocks
 
 COLUMNS = ("time", "position", "velocity", "mass")
 SPIRALLING = {

@@ -60,7 +60,7 @@ def gallery(folder, names=(), *, size=SIZE, progress=None) -> dict[str, Path]:
     """
     from sailviz.recording.writer import record
     from sailviz.scene.loading import load_scene
-    from sailviz.simulation import simulate_blocks
+    from sailviz.simulation.loop import simulate_blocks
 
     check_vulkan()
     scenes = shipped_scenes()

@@ -11,7 +11,7 @@ from sailviz.errors import SceneError
 from sailviz.recording import digest, export, read, record
 from sailviz.recording.drawing.ensembles import RING, SIGMAS, ellipses, spread
 from sailviz.recording.views.info import info
-from sailviz.simulation import simulate
+from sailviz.simulation.loop import simulate
 from sailviz.uncertainty.covariance import linear
 from sailviz.uncertainty.ensembles import fly_factors
 

@@ -21,7 +21,7 @@ from sailviz.design import spirals
 from sailviz.design.displaced.holding import Track
 from sailviz.environment.sun import sun_parameters
 from sailviz.errors import Fault, SceneError
-from sailviz.plan_low_orbit import brake_device, low_orbit_parts
+from sailviz.simulation.low_orbit import brake_device, low_orbit_parts
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate import events as happening
 from sailviz.propagate.choice import Choice, choose
@@ -33,11 +33,11 @@ from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.run.arrays import Body
 from sailviz.scene.loading import Scene
 from sailviz.scene.sections import HELD_STARTS
-from sailviz.schedule import Schedule, schedule
+from sailviz.simulation.thrust_history import Schedule, schedule
 
 if TYPE_CHECKING:
-    from sailviz.first_order import FirstOrder
-    from sailviz.quasi_circular import QuasiCircular
+    from sailviz.simulation.first_order import FirstOrder
+    from sailviz.simulation.quasi_circular import QuasiCircular
 
 BODIES = {
     "sun": Body("Sun", MU_SUN, RADIUS_SUN),
@@ -350,7 +350,7 @@ def _steering(scene, design, position, velocity):
         kind = law.TABLE_ORBITAL if steering.frame == "orbital" else law.TABLE_MERIDIAN
         return kind, (), table, law.INTERPOLATIONS[steering.interpolation], _throttled(steering)
     if steering.kind == "optimal":
-        from sailviz.optimal_flight import primer_table
+        from sailviz.simulation.optimal_steering import primer_table
 
         sail_of_law = steering.reckons_with or _sail_name(scene)
         table, switches = primer_table(scene, position, velocity, sail_of_law, sail_strength(scene, design))
@@ -489,7 +489,7 @@ def _approximations(scene, body, position, velocity, design) -> dict[str, FirstO
     wanted = [item for item in scene.approximation if item.kind == "first-order"]
     if not wanted:
         return {}
-    from sailviz.first_order import FirstOrder
+    from sailviz.simulation.first_order import FirstOrder
 
     r0, mu = float(np.linalg.norm(position)), body.mu
     device, steering = scene.device, scene.steering
@@ -517,7 +517,7 @@ def _quasi_circular(scene, position, velocity) -> QuasiCircular | None:
     """The analytic decay that a scene wants recorded beside its own."""
     if all(item.kind != "quasi-circular" for item in scene.approximation):
         return None
-    from sailviz.quasi_circular import QuasiCircular
+    from sailviz.simulation.quasi_circular import QuasiCircular
 
     return QuasiCircular(scene, position, velocity)
 

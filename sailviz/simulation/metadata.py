@@ -13,7 +13,7 @@ from sailviz import ephemeris
 from sailviz.scene.show import parameters_in_words
 from sailviz.design.displaced.holding import Track
 from sailviz.environment import ionosphere, solar_level, sun
-from sailviz.plan import TRACK_POINTS, Plan, epoch_of, sail_strength, third_body
+from sailviz.simulation.plan import TRACK_POINTS, Plan, epoch_of, sail_strength, third_body
 from sailviz.propagate import dop853, parameters as row
 from sailviz.propagate.choice import GAUSS_JACKSON
 from sailviz.run.arrays import Craft, Reference, Setting, Shell

@@ -10,13 +10,13 @@ import numpy as np
 from sailviz import elements as orbital
 from sailviz import frames
 from sailviz.errors import PropagationError
-from sailviz.observation import observe, voltages
-from sailviz.plan import Plan, plan
+from sailviz.simulation.environment_columns import observe, voltages
+from sailviz.simulation.plan import Plan, plan
 from sailviz.propagate import dop853, dynamics, gauss_jackson, stepping as integration
 from sailviz.propagate.choice import DOP853, GAUSS_JACKSON
 from sailviz.run.arrays import Attitude, Event, Run, Thrust, join
 from sailviz.scene.loading import Scene
-from sailviz.setting import bodies, planets_in_view, setting_of
+from sailviz.simulation.metadata import bodies, planets_in_view, setting_of
 
 BLOCK_ROWS = 16_384  # a recording takes this many at once
 DEFAULT_OUTPUTS = 1000
@@ -136,7 +136,7 @@ def _clouds(p: Plan, output):
     """The flights beside the scene's own; what they need is imported only where a scene has them."""
     if not p.scene.ensemble and not p.scene.chaos:
         return ()
-    from sailviz.clouds import clouds_of
+    from sailviz.simulation.ensembles import clouds_of
 
     return clouds_of(p, output)
 

@@ -139,7 +139,7 @@ def _open(sinks):
 
 def _run_one(name, values, sinks, quiet, failures):
     scene = load_scene(name, values)
-    from sailviz.expectations import Judge, table
+    from sailviz.checks.expectations import Judge, table
     from sailviz.simulation.loop import simulate_blocks
 
     say_if_compiling(quiet)

@@ -87,7 +87,7 @@ def _row(definition: Definition, scene: Scene, flight: int) -> dict:
 
 
 def _measured(definition: Definition, scene: Scene, flown: list) -> dict:
-    from sailviz.expectations import Judge
+    from sailviz.checks.expectations import Judge
     from sailviz.simulation.loop import simulate_blocks
 
     reported = definition.reported()

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import sailviz
-from sailviz.closed_forms import FORMS, error
+from sailviz.checks.closed_forms import FORMS, error
 from sailviz.constants import AU, MU_SUN
 from sailviz.elements import state
 from sailviz.errors import SceneError
-from sailviz.expectations import Judge, Verdict, check, table
+from sailviz.checks.expectations import Judge, Verdict, check, table
 from sailviz.recording.timelines import take
 from sailviz.scene.loading import Expectation
 from sailviz.run.from_arrays import trajectory

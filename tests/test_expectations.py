@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import sailviz
-from sailviz.expectations import Judge, check
+from sailviz.checks.expectations import Judge, check
 from sailviz.simulation.loop import simulate, simulate_blocks
 
 ELLIPSE = {  # a = 1 m around mu = 1 m3/s2: aphelion 1.3 at pi, perihelion 0.7 at 2 pi

@@ -13,7 +13,7 @@ import sailviz
 from sailviz import transfers
 from sailviz.cli import main
 from sailviz.constants import AU, DAY
-from sailviz.expectations import check
+from sailviz.checks.expectations import check
 
 
 def ask(*words):

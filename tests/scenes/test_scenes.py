@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 
 import sailviz
 from sailviz.design.minimum_time.smoothed import smoothed_transfer
-from sailviz.expectations import check
+from sailviz.checks.expectations import check
 from sailviz.scene.sections import SteadyWind
 from sailviz.shipped import shipped_folder, shipped_scenes
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from sailviz.closed_forms import FORMS, error
+from sailviz.checks.closed_forms import FORMS, error
 from sailviz.elements import elements
 from sailviz.scene.quantities import of_cloud, spellings
 from sailviz.run.arrays import Attitude, Run, Thrust

@@ -42,7 +42,7 @@ def recording_regression(request, tmp_path_factory):
         if name in used:
             pytest.fail(f"the baseline {name} is used twice in one test: give each a name", pytrace=False)
         used.add(name)
-        from sailviz.regression import Regression
+        from sailviz.checks.baselines import Regression
 
         regression = Regression(_folder(request, folder), name, rows=rows, atol=atol, rtol=rtol)
         if request.config.getoption("--sailviz-update"):

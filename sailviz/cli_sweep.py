@@ -54,10 +54,10 @@ def sweep(scene, vary, together, draws, seed, report, record, settings, output, 
     quiet = quiet or as_json
     path = Path(output or f"{Path(scene).stem}-sweep.parquet")
     try:
-        from sailviz.sweep_definition import define
+        from sailviz.sweeps.definition import define
 
         definition, wanted = define(scene, _varied(vary), draws, seed, _listed(report), together, values_of(settings))
-        from sailviz.sweeps import fly_all
+        from sailviz.sweeps.sweep import fly_all
 
         say_if_compiling(quiet)
         with _progress(path.stem, definition.flights, quiet) as progress:

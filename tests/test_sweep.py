@@ -17,15 +17,15 @@ import pytest
 from click.testing import CliRunner
 
 import sailviz
-from sailviz import sweeps
+from sailviz.sweeps import sweep as sweeps
 from sailviz.cli import main
 from sailviz.constants import AU, MU_SUN
 from sailviz.errors import SceneError
 from sailviz.shipped import shipped_sweeps
-from sailviz.sweep_definition import define
-from sailviz.sweep_engines import SerialExecutor
-from sailviz.sweep_laws import varied
-from sailviz.sweep_store import SweepError
+from sailviz.sweeps.definition import define
+from sailviz.sweeps.engines import SerialExecutor
+from sailviz.sweeps.distributions import varied
+from sailviz.sweeps.store import SweepError
 
 COASTING = {
     "title": "A circle round the Sun",
@@ -391,7 +391,7 @@ def test_an_interrupted_sweep_leaves_a_table_of_what_was_flown(tmp_path, shell, 
 
 
 def test_parts_that_came_out_of_order_become_one_table_in_order(tmp_path, gusts):
-    from sailviz.sweep_store import FileStore
+    from sailviz.sweeps.store import FileStore
 
     definition, _ = define(**GUSTS)
     path = tmp_path / "gusts.parquet"

@@ -8,8 +8,8 @@ import numpy as np
 
 from sailviz.errors import Fault, PropagationError, SceneError
 from sailviz.scene.faults import nearest
-from sailviz.sweep_definition import Definition
-from sailviz.sweep_flight import FAILED, schema_of
+from sailviz.sweeps.definition import Definition
+from sailviz.sweeps.flight import FAILED, schema_of
 
 _RULES = ("min", "max", "median")
 

@@ -19,11 +19,11 @@ from typing import Any
 import numpy as np
 
 from sailviz.scene.loading import Scene
-from sailviz.sweep_definition import Definition, define
-from sailviz.sweep_engines import abandon, check_engine, engine, processes, workers_of
-from sailviz.sweep_flight import DIED, blank, fly
-from sailviz.sweep_pick import check_picks, record_picked
-from sailviz.sweep_store import FileStore, MemoryStore, SweepError, counts
+from sailviz.sweeps.definition import Definition, define
+from sailviz.sweeps.engines import abandon, check_engine, engine, processes, workers_of
+from sailviz.sweeps.flight import DIED, blank, fly
+from sailviz.sweeps.picks import check_picks, record_picked
+from sailviz.sweeps.store import FileStore, MemoryStore, SweepError, counts
 
 __all__ = ["Sweep", "SweepError", "sweep"]
 

@@ -9,7 +9,7 @@ import time
 import sailviz
 from sailviz.errors import PropagationError, SailvizError, SceneError
 from sailviz.scene.loading import Scene
-from sailviz.sweep_definition import Definition
+from sailviz.sweeps.definition import Definition
 
 OK, FAILED = "ok", "failed"
 DIED = "the worker process died, for lack of memory perhaps"

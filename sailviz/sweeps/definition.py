@@ -27,7 +27,7 @@ from sailviz.scene.conflicts import conflicts
 from sailviz.scene.faults import convert, faults_of, locate, nearest
 from sailviz.scene.sections import Expectation, Section, _one_of
 from sailviz.shipped import shipped_sweeps
-from sailviz.sweep_laws import Axis, Draw, axis, drawn, flight_seed, varied
+from sailviz.sweeps.distributions import Axis, Draw, axis, drawn, flight_seed, varied
 from sailviz.units import UNITS
 
 PROBED = 300  # listed values of a key that are tried before the first flight

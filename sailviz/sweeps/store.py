@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from sailviz.errors import SailvizError
-from sailviz.sweep_definition import Definition
-from sailviz.sweep_flight import FAILED, schema_of
+from sailviz.sweeps.definition import Definition
+from sailviz.sweeps.flight import FAILED, schema_of
 
 GROUP_ROWS = 65_536  # of the finished table, read at once
 _FACTS = b"sailviz.sweep"

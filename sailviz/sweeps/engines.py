@@ -11,7 +11,7 @@ from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPool
 from contextlib import contextmanager
 
 from sailviz.scene.faults import nearest
-from sailviz.sweep_store import SweepError
+from sailviz.sweeps.store import SweepError
 
 ENGINES = ("processes", "threads", "serial", "dask")
 

@@ -10,7 +10,7 @@ import pytest
 from click.testing import CliRunner
 
 import sailviz
-from sailviz import transfers
+from sailviz.transfers import search as transfers
 from sailviz.cli import main
 from sailviz.constants import AU, DAY
 from sailviz.checks.expectations import check

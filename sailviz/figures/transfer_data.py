@@ -55,7 +55,7 @@ def _rows(name):
 
 def compute_times(path: Path) -> None:
     """Search every flight anew; rows are written as they are found."""
-    from sailviz import transfers
+    from sailviz.transfers import search as transfers
 
     wanted = {(t, d, a) for t in TARGETS for d in OVER_ACCELERATION for a in ACCELERATIONS}
     wanted |= {(t, d, 1.0) for t in TARGETS[:3] for d in COMPARED}
@@ -69,7 +69,7 @@ def compute_times(path: Path) -> None:
 
 def compute_windows(path: Path) -> None:
     """Search every departure anew."""
-    from sailviz import transfers
+    from sailviz.transfers import search as transfers
 
     with open(path, "w", newline="", encoding="utf-8") as file:
         file.write("target,departure,time_d\n")

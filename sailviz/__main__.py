@@ -1,5 +1,5 @@
 """`python -m sailviz`."""
 
-from sailviz.cli import main
+from sailviz.cli.main import main
 
 main(prog_name="sailviz")

@@ -11,7 +11,7 @@ import jsonschema
 import pytest
 from click.testing import CliRunner
 
-from sailviz.cli import main
+from sailviz.cli.main import main
 from sailviz.shipped import shipped_scenes
 
 SHORT = ("--set", "propagation.duration_d=30", "--set", "propagation.outputs=20", "--set", "expect=[]")

@@ -18,7 +18,7 @@ from click.testing import CliRunner
 
 import sailviz
 from sailviz.sweeps import sweep as sweeps
-from sailviz.cli import main
+from sailviz.cli.main import main
 from sailviz.constants import AU, MU_SUN
 from sailviz.errors import SceneError
 from sailviz.shipped import shipped_sweeps
@@ -335,7 +335,7 @@ def _begin(folder, *words):
     """A sweep in a process of its own, once two parts of it are on disk."""
     environment = os.environ | {"PYTHONPATH": str(Path(sailviz.__file__).parents[1])}
     begun = subprocess.Popen(
-        [sys.executable, "-m", "sailviz.cli", "sweep", *LONG, *words],
+        [sys.executable, "-m", "sailviz.cli.main", "sweep", *LONG, *words],
         cwd=folder,
         env=environment,
         stderr=subprocess.PIPE,

@@ -11,7 +11,7 @@ from click.testing import CliRunner
 
 import sailviz
 from sailviz.transfers import search as transfers
-from sailviz.cli import main
+from sailviz.cli.main import main
 from sailviz.constants import AU, DAY
 from sailviz.checks.expectations import check
 

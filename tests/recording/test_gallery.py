@@ -5,8 +5,8 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from sailviz.cli import main
-from sailviz.recording.gallery import POSES, Pose, file_names, gallery, markdown, pose_of, squeezed
+from sailviz.cli.main import main
+from sailviz.cli.gallery import POSES, Pose, file_names, gallery, markdown, pose_of, squeezed
 from sailviz.recording.views.screenshot import has_vulkan
 from sailviz.shipped import shipped_scenes
 
@@ -62,7 +62,7 @@ def test_the_gallery_makes_a_picture_and_its_table(tmp_path):
 
 
 def test_an_unknown_scene_is_refused(tmp_path, monkeypatch):
-    from sailviz.recording import gallery as module
+    from sailviz.cli import gallery as module
 
     monkeypatch.setattr(module, "check_vulkan", lambda: None)
     result = CliRunner().invoke(main, ["gallery", "spirals/nowhere", "-o", str(tmp_path)])

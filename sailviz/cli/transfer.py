@@ -10,7 +10,7 @@ from pathlib import Path
 
 import click
 
-from sailviz.cli_shared import BAD_INPUT, EXPECTATION_FAILED, progress_bar
+from sailviz.cli.shared import BAD_INPUT, EXPECTATION_FAILED, progress_bar
 from sailviz.constants import AU, DAY
 
 TABLE_MM_S2 = (2.0, 1.5, 1.0, 0.75, 0.5, 0.35, 0.25)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import click
 
-from sailviz.cli_shared import collecting_failures, progress_bar, say_if_compiling, set_option, values_of
+from sailviz.cli.shared import collecting_failures, progress_bar, say_if_compiling, set_option, values_of
 from sailviz.errors import RecordingError
 
 VIEW_FAILED = 1
@@ -203,8 +203,8 @@ def view(files):
 @click.option("-q", "--quiet", is_flag=True, help="No progress bar.")
 def gallery(scenes, output, quiet):
     """Take the pictures of the README, one of every shipped scene, and print the table that shows them."""
-    from sailviz.recording.gallery import gallery as take
-    from sailviz.recording.gallery import markdown
+    from sailviz.cli.gallery import gallery as take
+    from sailviz.cli.gallery import markdown
 
     say_if_compiling(quiet)
     with collecting_failures() as failures, failures.next(), progress_bar("Gallery", quiet) as progress:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from sailviz.cli_shared import BAD_INPUT
+from sailviz.cli.shared import BAD_INPUT
 
 
 @click.command()

@@ -7,13 +7,13 @@ import pytest
 
 import sailviz
 from sailviz.checks.closed_forms import FORMS, error
+from sailviz.checks.expectations import Judge, Verdict, check, table
 from sailviz.constants import AU, MU_SUN
 from sailviz.elements import state
 from sailviz.errors import SceneError
-from sailviz.checks.expectations import Judge, Verdict, check, table
 from sailviz.recording.timelines import take
-from sailviz.scene.loading import Expectation
 from sailviz.run.from_arrays import trajectory
+from sailviz.scene.loading import Expectation
 
 
 def scene(**changes):

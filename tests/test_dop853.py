@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 
-from sailviz.steering import attitude as law
 from sailviz.constants import AU
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import APSIS, END_OF_USE, ENERGY, NODE, RADIUS, RECORD, STOP, watch
+from sailviz.steering import attitude as law
 
 TURN = 2 * np.pi
 

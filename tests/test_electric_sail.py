@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 
 from sailviz.constants import AU
-from sailviz.propulsion.electric_sail import CONE_MAX, MODELS, PITCH_AT_CONE_MAX, acceleration, characteristic_acceleration, cone_angle, dimensionless_acceleration, pitch_angle
+from sailviz.propulsion.electric_sail import (
+    CONE_MAX,
+    MODELS,
+    PITCH_AT_CONE_MAX,
+    acceleration,
+    characteristic_acceleration,
+    cone_angle,
+    dimensionless_acceleration,
+    pitch_angle,
+)
 
 DEG = np.pi / 180
 

@@ -114,7 +114,7 @@ def test_a_tolerance_in_percent_is_of_the_value():
 
 
 def test_every_quantity_has_a_dimension_and_a_value():
-    from sailviz.scene.quantities import DIMENSIONS
     from sailviz.run.quantities import VALUES
+    from sailviz.scene.quantities import DIMENSIONS
 
     assert list(DIMENSIONS) == list(VALUES)

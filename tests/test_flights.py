@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 import sailviz
-from sailviz.steering import attitude as law
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
-from sailviz.design.displaced import orbits as displaced
 from sailviz.design import spirals
+from sailviz.design.displaced import orbits as displaced
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import APSIS, ENERGY, RECORD, STOP
 from sailviz.propulsion import electric_sail, solar_sail
 from sailviz.propulsion.solar_sail import FILMS
+from sailviz.steering import attitude as law
 
 DEG = np.pi / 180
 BEST = np.arctan(2**-0.5)  # the pitch of the largest transverse force of an ideal sail

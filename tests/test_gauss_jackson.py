@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sailviz.steering import attitude as law
 from sailviz.constants import DAY, J2_EARTH, MU_EARTH, RADIUS_EARTH
 from sailviz.elements import state as state_on_orbit
-from sailviz.propagate import choice, dop853, dynamics, gauss_jackson, parameters as row
-from sailviz.propagate.events import APSIS, END_OF_USE, NODE, RADIUS, RECORD, STOP, watch
+from sailviz.propagate import choice, dop853, dynamics, gauss_jackson
+from sailviz.propagate import parameters as row
 from sailviz.propagate.callbacks import user_address
+from sailviz.propagate.events import APSIS, END_OF_USE, NODE, RADIUS, RECORD, STOP, watch
+from sailviz.steering import attitude as law
 
 R0 = RADIUS_EARTH + 700e3
 J2_STRENGTH = 1.5 * J2_EARTH * MU_EARTH * RADIUS_EARTH**2

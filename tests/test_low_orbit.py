@@ -9,7 +9,16 @@ import numpy as np
 import pytest
 
 import sailviz
-from sailviz.constants import ATOMIC_MASS, DAY, ELEMENTARY_CHARGE, MASS_ELECTRON, MU_EARTH, RADIUS_EARTH, VACUUM_PERMITTIVITY, YEAR
+from sailviz.constants import (
+    ATOMIC_MASS,
+    DAY,
+    ELEMENTARY_CHARGE,
+    MASS_ELECTRON,
+    MU_EARTH,
+    RADIUS_EARTH,
+    VACUUM_PERMITTIVITY,
+    YEAR,
+)
 from sailviz.design.decay import quasi_circular as decay
 from sailviz.environment.eclipse import circular_fraction
 from sailviz.errors import SceneError

@@ -6,7 +6,27 @@ import numpy as np
 import pytest
 
 from sailviz.constants import ATOMIC_MASS, MU_EARTH, RADIUS_EARTH
-from sailviz.propulsion.plasma_brake import PHOTOELECTRONS, REASONS, current, electron_flux, force_per_length, limited_voltage, magnetic_factor, negative_force_per_length, positive_force_per_length, power, power_limited_voltage, species_force_per_length, spin_factor, tether_mass, tether_tilt, tilt, tip_tension, validity, wire_mass
+from sailviz.propulsion.plasma_brake import (
+    PHOTOELECTRONS,
+    REASONS,
+    current,
+    electron_flux,
+    force_per_length,
+    limited_voltage,
+    magnetic_factor,
+    negative_force_per_length,
+    positive_force_per_length,
+    power,
+    power_limited_voltage,
+    species_force_per_length,
+    spin_factor,
+    tether_mass,
+    tether_tilt,
+    tilt,
+    tip_tension,
+    validity,
+    wire_mass,
+)
 
 OXYGEN = 15.999 * ATOMIC_MASS
 TYPICAL = {"density": 3e10, "ion_mass": OXYGEN, "speed": 7500.0, "voltage": 1000.0}

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from sailviz import elements
-from sailviz.steering import primers
 from sailviz.compiled import compiled
-from sailviz.steering.optimal import analytic_pitch, optimal_pitch, towards_primer, towards_primer_analytic
 from sailviz.propulsion import electric_sail, solar_sail
 from sailviz.propulsion.devices import sail
+from sailviz.steering import primers
+from sailviz.steering.optimal import analytic_pitch, optimal_pitch, towards_primer, towards_primer_analytic
 
 MU = 1.3
 ORBIT = (1.1, 0.3, 0.7, 0.5, 1.9, 2.3)  # a, e, i, raan, argument, true anomaly

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-import sailviz.recording.writer  # once out here, or every inner run would import rerun anew
 import sailviz.checks.baselines
+import sailviz.recording.writer  # once out here, or every inner run would import rerun anew
 import sailviz.run.from_arrays  # noqa: F401
 
 pytest_plugins = ["pytester"]

@@ -15,9 +15,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sailviz.errors import SceneError
-from sailviz.simulation.plan import plan
 from sailviz.scene.loading import load_scene, schema
 from sailviz.shipped import shipped_scenes
+from sailviz.simulation.plan import plan
 from sailviz.units import UNITS
 
 RAW = {name: tomllib.loads(path.read_text(encoding="utf-8")) for name, path in shipped_scenes().items()}

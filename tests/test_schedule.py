@@ -11,8 +11,8 @@ from sailviz.cli.main import main
 from sailviz.constants import AU, DAY, YEAR
 from sailviz.environment.solar_wind.pressure import PHASES
 from sailviz.errors import SceneError
-from sailviz.simulation.thrust_history import schedule
 from sailviz.simulation.loop import simulate
+from sailviz.simulation.thrust_history import schedule
 
 GAMMA = {"kind": "gamma", "shape": 2.593, "scale_nPa": 0.7793, "seed": 7}
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sailviz import frames
-from sailviz.steering import attitude as law
 from sailviz.propagate import dynamics
+from sailviz.steering import attitude as law
 
 RNG = np.random.default_rng(11)
 STATES = np.concatenate([RNG.normal(size=(6, 40)), np.ones((1, 40))])

@@ -10,10 +10,10 @@ import pytest
 from click.testing import CliRunner
 
 import sailviz
-from sailviz.transfers import search as transfers
+from sailviz.checks.expectations import check
 from sailviz.cli.main import main
 from sailviz.constants import AU, DAY
-from sailviz.checks.expectations import check
+from sailviz.transfers import search as transfers
 
 
 def ask(*words):

@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from sailviz.errors import RecordingError
-from sailviz.run import resample
 from sailviz.recording.comparison.compare import Comparison, compare, default_tolerance
 from sailviz.recording.comparison.tables import Evidence, evidence
 from sailviz.recording.exports import _atomic, _write_npz, arrays
+from sailviz.run import resample
 from sailviz.run.arrays import Run
 
 SMOOTH = 0.7  # rad: where rows are closer on the orbit than this, a picture may draw a curve through them

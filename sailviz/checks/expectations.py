@@ -8,9 +8,9 @@ import numpy as np
 
 from sailviz.checks.closed_forms import FORMS, error
 from sailviz.elements import elements
-from sailviz.scene.quantities import of_cloud, spellings
 from sailviz.run.arrays import Attitude, Run, Thrust
 from sailviz.scene.loading import Expectation, Scene
+from sailviz.scene.quantities import of_cloud, spellings
 
 
 @dataclass(frozen=True)

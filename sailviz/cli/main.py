@@ -13,8 +13,19 @@ from pathlib import Path
 
 import click
 
-from sailviz.cli import figures as cli_figures, pictures as cli_pictures, recordings as cli_recordings, sweep as cli_sweep, transfer as cli_transfer
-from sailviz.cli.shared import EXPECTATION_FAILED, collecting_failures, progress_bar, say_if_compiling, set_option, values_of
+from sailviz.cli import figures as cli_figures
+from sailviz.cli import pictures as cli_pictures
+from sailviz.cli import recordings as cli_recordings
+from sailviz.cli import sweep as cli_sweep
+from sailviz.cli import transfer as cli_transfer
+from sailviz.cli.shared import (
+    EXPECTATION_FAILED,
+    collecting_failures,
+    progress_bar,
+    say_if_compiling,
+    set_option,
+    values_of,
+)
 from sailviz.errors import PropagationError, RecordingError
 from sailviz.scene.loading import load_scene, schema
 from sailviz.shipped import shipped_scenes

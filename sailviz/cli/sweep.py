@@ -9,7 +9,15 @@ from pathlib import Path
 
 import click
 
-from sailviz.cli.shared import BAD_INPUT, EXPECTATION_FAILED, INTERRUPTED, RUN_FAILED, say_if_compiling, set_option, values_of
+from sailviz.cli.shared import (
+    BAD_INPUT,
+    EXPECTATION_FAILED,
+    INTERRUPTED,
+    RUN_FAILED,
+    say_if_compiling,
+    set_option,
+    values_of,
+)
 from sailviz.errors import RecordingError, SailvizError, SceneError
 
 

@@ -60,8 +60,8 @@ def transfer(
     sails = sails or ("ideal",)
     try:
         _agree(target, radius_au, inclination_deg, orbits, date, window, sails, as_table, output, acceleration)
-        from sailviz.transfers import search as transfers
         from sailviz.design.minimum_time import costates
+        from sailviz.transfers import search as transfers
 
         _say_if_compiling(costates.propagate_batch, quiet or as_json)
         start = transfers.place(origin)

@@ -13,9 +13,9 @@ from functools import cached_property
 import numpy as np
 from scipy.integrate import quad
 
-from sailviz.steering import attitude as law
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import ENERGY, STOP, watch
+from sailviz.steering import attitude as law
 
 THRESHOLD = 1 / 8  # radial acceleration over mu / r0^2 that must be exceeded to escape: (2.14)
 LAWS = {"radial": law.RADIAL, "circumferential": law.TRANSVERSE, "tangential": law.TANGENTIAL}

@@ -7,8 +7,8 @@ from matplotlib.dates import DateFormatter, MonthLocator
 
 from sailviz.figures import transfer_data
 from sailviz.figures.transfer_data import COMPARED, OVER_ACCELERATION, TARGETS
-from sailviz.steering.optimal import analytic_pitch, optimal_pitch
 from sailviz.propulsion.solar_sail import FILMS
+from sailviz.steering.optimal import analytic_pitch, optimal_pitch
 
 WORDS = {
     "ideal": "ideal film",

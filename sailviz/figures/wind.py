@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.steering import attitude as steering
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN, YEAR
 from sailviz.design.minimum_time.smoothed import smoothed_transfer
 from sailviz.environment.solar_wind import pressure as solar_wind
 from sailviz.environment.solar_wind.laws import Gamma
-from sailviz.propulsion import voltage_control as control
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
+from sailviz.propulsion import voltage_control as control
 from sailviz.propulsion.electric_sail import FINAL, PITCH_LIMIT
+from sailviz.steering import attitude as steering
 from sailviz.uncertainty import chaos, wind
 from sailviz.uncertainty.covariance import linear
 from sailviz.uncertainty.ensembles import RandomWind, fly_ensemble, fly_factors

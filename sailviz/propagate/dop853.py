@@ -17,7 +17,31 @@ from sailviz.compiled import compiled, inlined
 from sailviz.propagate import dop853_coefficients as c
 from sailviz.propagate.dynamics import MU, SIZE, SURFACE_RADIUS, Model, derivative
 from sailviz.propagate.events import Watch, measure
-from sailviz.propagate.stepping import CLOCK, DENSE, DENSE_START, DENSE_STEP, EVENT_SAMPLES, EVENTS, IN_USE, INTERVAL, NEW, REJECTED, ROW, STARTED, STATUS, STEP, STEPS, TIME, Integration, W, Y, factor_from, fill, happenings, surface_met
+from sailviz.propagate.stepping import (
+    CLOCK,
+    DENSE,
+    DENSE_START,
+    DENSE_STEP,
+    EVENT_SAMPLES,
+    EVENTS,
+    IN_USE,
+    INTERVAL,
+    NEW,
+    REJECTED,
+    ROW,
+    STARTED,
+    STATUS,
+    STEP,
+    STEPS,
+    TIME,
+    Integration,
+    W,
+    Y,
+    factor_from,
+    fill,
+    happenings,
+    surface_met,
+)
 from sailviz.propagate.stepping import DONE as DONE
 from sailviz.propagate.stepping import EVENTS_FULL as EVENTS_FULL
 from sailviz.propagate.stepping import MOST_EVENTS as MOST_EVENTS

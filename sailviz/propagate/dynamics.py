@@ -11,17 +11,49 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sailviz.steering import attitude as law
 from sailviz.compiled import called, compiled, inlined
 from sailviz.environment.atmosphere import air_drag
 from sailviz.environment.gravity import gravity
 from sailviz.environment.ionosphere import exponential
 from sailviz.propagate.callbacks import plugged, user_vector
-from sailviz.propagate.parameters import AIR, AIR_TABLE, BRAKE, CONTROL, CONTROL_LAW, CONTROL_TABLE, DEVICE, EXPONENTIAL_AIR, FLUX, HEIGHT, INTERPOLATION, J2_STRENGTH, LOW_ORBIT, MU, PLASMA, PLASMA_TABLE, PRIMER_KIND, PRIMER_LAW, PRIMER_MU, ROTATION, ROWS, SHADOW, STEER_AS, STEERING, SUN, SURFACE_RADIUS, TABLE, THIRD_BODY, USER_FORCE, USER_STEERING, ZONAL
+from sailviz.propagate.parameters import (
+    AIR,
+    AIR_TABLE,
+    BRAKE,
+    CONTROL,
+    CONTROL_LAW,
+    CONTROL_TABLE,
+    DEVICE,
+    EXPONENTIAL_AIR,
+    FLUX,
+    HEIGHT,
+    INTERPOLATION,
+    J2_STRENGTH,
+    LOW_ORBIT,
+    MU,
+    PLASMA,
+    PLASMA_TABLE,
+    PRIMER_KIND,
+    PRIMER_LAW,
+    PRIMER_MU,
+    ROTATION,
+    ROWS,
+    SHADOW,
+    STEER_AS,
+    STEERING,
+    SUN,
+    SURFACE_RADIUS,
+    TABLE,
+    THIRD_BODY,
+    USER_FORCE,
+    USER_STEERING,
+    ZONAL,
+)
 from sailviz.propulsion.devices import ELECTRIC_SAIL, NO_DEVICE, PLASMA_BRAKE, SOLAR_SAIL, THRUSTER  # noqa: F401
 from sailviz.propulsion.electric_sail import esail_force
 from sailviz.propulsion.solar_sail import sail_force
 from sailviz.propulsion.thruster import thruster_force
+from sailviz.steering import attitude as law
 
 SIZE = 7  # of the state
 

@@ -34,7 +34,35 @@ from sailviz.propagate.dynamics import DEVICE, MU, SIZE, SURFACE_RADIUS, THRUSTE
 from sailviz.propagate.events import Watch, measure
 from sailviz.propagate.events import watch as no_events
 from sailviz.propagate.gauss_jackson_coefficients import LAGS
-from sailviz.propagate.stepping import CLOCK, DENSE, DENSE_START, DENSE_STEP, DONE, EVENT_SAMPLES, EVENTS, EVENTS_FULL, IN_USE, INTERVAL, MOST_EVENTS, NEW, ROW, STARTED, STATUS, STEP, STEPS, STOPPED, SURFACE, TIME, Integration, W, Y, factor_from, fill, happenings, surface_met
+from sailviz.propagate.stepping import (
+    CLOCK,
+    DENSE,
+    DENSE_START,
+    DENSE_STEP,
+    DONE,
+    EVENT_SAMPLES,
+    EVENTS,
+    EVENTS_FULL,
+    IN_USE,
+    INTERVAL,
+    MOST_EVENTS,
+    NEW,
+    ROW,
+    STARTED,
+    STATUS,
+    STEP,
+    STEPS,
+    STOPPED,
+    SURFACE,
+    TIME,
+    Integration,
+    W,
+    Y,
+    factor_from,
+    fill,
+    happenings,
+    surface_met,
+)
 from sailviz.propagate.stepping import NOT_FINITE as NOT_FINITE
 from sailviz.propagate.stepping import UNDERFLOW as UNDERFLOW
 from sailviz.propagate.stepping import drain_events as drain_events

@@ -17,7 +17,12 @@ from sailviz.environment.gravity import geodetic_altitude
 from sailviz.environment.solar_level import flux
 from sailviz.propagate import parameters as at
 from sailviz.propagate.callbacks import plug_address
-from sailviz.propulsion.plasma_brake import limited_voltage, negative_force_per_length, positive_force_per_length, tether_current
+from sailviz.propulsion.plasma_brake import (
+    limited_voltage,
+    negative_force_per_length,
+    positive_force_per_length,
+    tether_current,
+)
 
 TABLE_PROFILE = 2  # of the plasma, beside the exponential profiles of environment.ionosphere
 

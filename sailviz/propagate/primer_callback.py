@@ -9,12 +9,12 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from sailviz.steering import attitude as law
 from sailviz.compiled import called, compiled
-from sailviz.steering.optimal import steer, towards_primer
-from sailviz.steering.primers import locally_optimal_primer, lyapunov_primer
 from sailviz.propagate import parameters as at
 from sailviz.propagate.callbacks import plug_address
+from sailviz.steering import attitude as law
+from sailviz.steering.optimal import steer, towards_primer
+from sailviz.steering.primers import locally_optimal_primer, lyapunov_primer
 
 
 @called

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from sailviz.compiled import compiled, inlined
+from sailviz.propagate.callbacks import plugged
 from sailviz.propagate.dynamics import SIZE
 from sailviz.propagate.events import APSIS, END_OF_USE, RADIUS, STOP, measure
-from sailviz.propagate.callbacks import plugged
 from sailviz.propagate.parameters import CONTROL
 
 EVENT_SAMPLES = 4  # at most per step, so that two crossings inside one step are seen

@@ -9,9 +9,9 @@ from __future__ import annotations
 import numba
 import numpy as np
 
-from sailviz.propulsion import voltage_control as control
 from sailviz.propagate import parameters as at
 from sailviz.propagate.callbacks import plug_address
+from sailviz.propulsion import voltage_control as control
 
 # Columns of a line: what blows, where the reference flight is, whether the controller acts, whether thrust is wanted
 PRESSURE, DENSITY, POTENTIAL, R_REF, U_REF, UPDATE, WANTED, VOLTAGE = range(8)

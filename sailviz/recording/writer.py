@@ -17,7 +17,8 @@ import rerun as rr
 from rerun.error_utils import catch_and_log_exceptions
 
 from sailviz.errors import PropagationError, RecordingError
-from sailviz.recording import timelines as rows, contract as truth
+from sailviz.recording import contract as truth
+from sailviz.recording import timelines as rows
 from sailviz.recording.drawing.drawing import Drawing
 from sailviz.recording.sinks import File, Memory, Web, attach, discard, resolve, web_address
 from sailviz.run.arrays import Event, Run

@@ -20,7 +20,22 @@ from pydantic_core import ValidationError
 from sailviz.errors import SceneError
 from sailviz.scene.conflicts import conflicts
 from sailviz.scene.faults import convert, faults_of, locate, nearest
-from sailviz.scene.sections import Approximation, Chaos, CustomBody, Devices, Ensemble, Environment, Expectation, Propagation, Recording, Section, Start, Steering, Target, Watched
+from sailviz.scene.sections import (
+    Approximation,
+    Chaos,
+    CustomBody,
+    Devices,
+    Ensemble,
+    Environment,
+    Expectation,
+    Propagation,
+    Recording,
+    Section,
+    Start,
+    Steering,
+    Target,
+    Watched,
+)
 from sailviz.shipped import shipped_scenes
 
 

@@ -12,9 +12,16 @@ import numpy as np
 
 from sailviz.constants import AU, SOLAR_IRRADIANCE
 from sailviz.errors import Fault, SceneError
-from sailviz.simulation.plan import Plan, film_of, sail_strength
 from sailviz.run.arrays import Cloud
-from sailviz.simulation.thrust_history import control_row, electrochromic, measured_wind, reference_pressure, sunlight, wind_law
+from sailviz.simulation.plan import Plan, film_of, sail_strength
+from sailviz.simulation.thrust_history import (
+    control_row,
+    electrochromic,
+    measured_wind,
+    reference_pressure,
+    sunlight,
+    wind_law,
+)
 
 OUTPUTS = 181  # rows of the run at which clouds are known
 RECORDED = 1024  # flights known at every one of them, for histograms

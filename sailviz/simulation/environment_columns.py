@@ -6,14 +6,16 @@ import numpy as np
 
 from sailviz import elements as orbital
 from sailviz import ephemeris
-from sailviz.steering import attitude as law
 from sailviz.constants import ATOMIC_MASS, J2_EARTH, RADIUS_EARTH
-from sailviz.simulation.plan import Plan, epoch_of
-from sailviz.simulation.low_orbit import watches_shadow
-from sailviz.propagate import voltage_callback as control_plug, dynamics, parameters as row
+from sailviz.propagate import dynamics
 from sailviz.propagate import low_orbit_callback as seen
+from sailviz.propagate import parameters as row
+from sailviz.propagate import voltage_callback as control_plug
 from sailviz.propagate.primer_callback import observe_primer
 from sailviz.propulsion.plasma_brake import validity
+from sailviz.simulation.low_orbit import watches_shadow
+from sailviz.simulation.plan import Plan, epoch_of
+from sailviz.steering import attitude as law
 
 
 def observe(p: Plan, time, states, factor):

@@ -10,13 +10,14 @@ import numpy as np
 from sailviz import elements as orbital
 from sailviz import frames
 from sailviz.errors import PropagationError
-from sailviz.simulation.environment_columns import observe, voltages
-from sailviz.simulation.plan import Plan, plan
-from sailviz.propagate import dop853, dynamics, gauss_jackson, stepping as integration
+from sailviz.propagate import dop853, dynamics, gauss_jackson
+from sailviz.propagate import stepping as integration
 from sailviz.propagate.choice import DOP853, GAUSS_JACKSON
 from sailviz.run.arrays import Attitude, Event, Run, Thrust, join
 from sailviz.scene.loading import Scene
+from sailviz.simulation.environment_columns import observe, voltages
 from sailviz.simulation.metadata import bodies, planets_in_view, setting_of
+from sailviz.simulation.plan import Plan, plan
 
 BLOCK_ROWS = 16_384  # a recording takes this many at once
 DEFAULT_OUTPUTS = 1000

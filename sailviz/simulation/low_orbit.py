@@ -10,7 +10,8 @@ from sailviz.environment import atmosphere, ionosphere, solar_level
 from sailviz.environment.eclipse import CONE, CYLINDER, NO_SHADOW
 from sailviz.environment.gravity import strengths
 from sailviz.environment.sun import sun_parameters
-from sailviz.propagate import low_orbit_callback as low_orbit, parameters as row
+from sailviz.propagate import low_orbit_callback as low_orbit
+from sailviz.propagate import parameters as row
 from sailviz.propulsion.plasma_brake import spin_factor, tether_mass
 
 SPIN_AXES = {"along-track": 0.0, "across-track": np.pi / 2}  # rad between the velocity and the plane of spin

@@ -10,14 +10,15 @@ import numpy as np
 import sailviz
 from sailviz import elements as orbital
 from sailviz import ephemeris
-from sailviz.scene.show import parameters_in_words
 from sailviz.design.displaced.holding import Track
 from sailviz.environment import ionosphere, solar_level, sun
-from sailviz.simulation.plan import TRACK_POINTS, Plan, epoch_of, sail_strength, third_body
-from sailviz.propagate import dop853, parameters as row
+from sailviz.propagate import dop853
+from sailviz.propagate import parameters as row
 from sailviz.propagate.choice import GAUSS_JACKSON
 from sailviz.run.arrays import Craft, Reference, Setting, Shell
 from sailviz.scene.sections import HELD_STARTS
+from sailviz.scene.show import parameters_in_words
+from sailviz.simulation.plan import TRACK_POINTS, Plan, epoch_of, sail_strength, third_body
 
 SHELL_ANGLES, SHELL_STEP = 120, 25e3  # round the orbit; m between altitudes
 

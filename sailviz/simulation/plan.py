@@ -13,27 +13,27 @@ import numpy as np
 
 from sailviz import elements as orbital
 from sailviz import ephemeris, frames
-from sailviz.steering import primers
-from sailviz.steering import attitude as law
 from sailviz.constants import AU, DAY, J2_EARTH, MU_EARTH, MU_SUN, RADIUS_EARTH, RADIUS_SUN, STANDARD_GRAVITY
-from sailviz.design.displaced import orbits as displaced
 from sailviz.design import spirals
+from sailviz.design.displaced import orbits as displaced
 from sailviz.design.displaced.holding import Track
 from sailviz.environment.sun import sun_parameters
 from sailviz.errors import Fault, SceneError
-from sailviz.simulation.low_orbit import brake_device, low_orbit_parts
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate import events as happening
+from sailviz.propagate.callbacks import user_address
 from sailviz.propagate.choice import Choice, choose
 from sailviz.propagate.voltage_callback import R_REF, U_REF, WANTED, factor_plug
-from sailviz.propagate.callbacks import user_address
 from sailviz.propulsion import electric_sail
 from sailviz.propulsion.devices import sail
 from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.run.arrays import Body
 from sailviz.scene.loading import Scene
 from sailviz.scene.sections import HELD_STARTS
+from sailviz.simulation.low_orbit import brake_device, low_orbit_parts
 from sailviz.simulation.thrust_history import Schedule, schedule
+from sailviz.steering import attitude as law
+from sailviz.steering import primers
 
 if TYPE_CHECKING:
     from sailviz.simulation.first_order import FirstOrder

@@ -14,8 +14,8 @@ from sailviz.constants import FLATTENING_EARTH, J2_EARTH, MU_EARTH, RADIUS_EARTH
 from sailviz.design.decay import quasi_circular as decay
 from sailviz.environment import atmosphere, ionosphere
 from sailviz.errors import Fault, SceneError
-from sailviz.simulation.low_orbit import SPIN_AXES
 from sailviz.propulsion.plasma_brake import force_per_length, spin_factor
+from sailviz.simulation.low_orbit import SPIN_AXES
 
 
 class QuasiCircular:

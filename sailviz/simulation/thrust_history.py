@@ -11,10 +11,11 @@ import numpy as np
 
 from sailviz.constants import SOLAR_IRRADIANCE, WIND_POTENTIAL, WIND_PRESSURE
 from sailviz.environment import irradiance
-from sailviz.environment.solar_wind import pressure as solar_wind, laws as wind_laws
+from sailviz.environment.solar_wind import laws as wind_laws
+from sailviz.environment.solar_wind import pressure as solar_wind
 from sailviz.errors import Fault, SceneError
-from sailviz.propulsion import voltage_control as control
 from sailviz.propagate import voltage_callback as knows
+from sailviz.propulsion import voltage_control as control
 
 NOMINAL_VOLTAGE = 20e3  # V, of an electric sail that does not say its own
 

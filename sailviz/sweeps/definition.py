@@ -22,9 +22,9 @@ from pydantic_core import ValidationError
 
 import sailviz
 from sailviz.errors import Fault, SceneError
-from sailviz.scene.loading import Scene, _find, _same_quantity, load_scene
 from sailviz.scene.conflicts import conflicts
 from sailviz.scene.faults import convert, faults_of, locate, nearest
+from sailviz.scene.loading import Scene, _find, _same_quantity, load_scene
 from sailviz.scene.sections import Expectation, Section, _one_of
 from sailviz.shipped import shipped_sweeps
 from sailviz.sweeps.distributions import Axis, Draw, axis, drawn, flight_seed, varied

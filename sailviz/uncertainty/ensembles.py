@@ -11,18 +11,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailviz.steering import attitude as laws
 from sailviz.constants import AU, DAY, MU_SUN, YEAR
-from sailviz.environment.solar_wind.pressure import CORRELATION_TIME, KINDS
 from sailviz.environment.solar_wind.laws import Law
-from sailviz.propulsion import voltage_control as voltage
-from sailviz.propagate.ensemble.flights import LINEAR, ROOT, SEEN, Wind, covariance, fly, percentiles
+from sailviz.environment.solar_wind.pressure import CORRELATION_TIME, KINDS
 from sailviz.propagate.ensemble.draws import DRAWN, GIVEN, REPLAYED
+from sailviz.propagate.ensemble.flights import LINEAR, ROOT, SEEN, Wind, covariance, fly, percentiles
 from sailviz.propagate.ensemble.motion import MERIDIAN, ORBITAL, PLANE
 from sailviz.propagate.ensemble.segments import nominal, refined, segments
 from sailviz.propulsion import electric_sail, solar_sail
+from sailviz.propulsion import voltage_control as voltage
 from sailviz.propulsion.electric_sail import MODELS
 from sailviz.propulsion.solar_sail import FILMS, Film
+from sailviz.steering import attitude as laws
 
 LEVELS = (5.0, 25.0, 50.0, 75.0, 95.0)
 _DEVIATES = np.linspace(-8.5, 8.5, 8193)  # a 53-bit number lies within +-8.3; 2e-7 of the pressure between entries

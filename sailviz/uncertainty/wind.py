@@ -14,9 +14,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailviz.environment.solar_wind import pressure as solar_wind, laws as wind_laws
+from sailviz.environment.solar_wind import laws as wind_laws
+from sailviz.environment.solar_wind import pressure as solar_wind
+from sailviz.environment.solar_wind.laws import (
+    LAWS,
+    Burr,
+    Gamma,
+    InverseGamma,
+    InverseGaussian,
+    Law,
+    Lognormal,
+    Weibull,
+    named,
+)
 from sailviz.environment.solar_wind.pressure import KINDS, PHASES
-from sailviz.environment.solar_wind.laws import LAWS, Burr, Gamma, InverseGamma, InverseGaussian, Law, Lognormal, Weibull, named
 from sailviz.environment.solar_wind.series import Repairs, Series, check_pressures, read_omni, read_series, series
 
 __all__ = [

@@ -17,11 +17,12 @@ from time import process_time_ns
 import numpy as np
 import pytest
 
-from sailviz.steering import attitude as law
 from sailviz.constants import AU, MU_SUN
-from sailviz.design.asymptotic import solution as asymptotic, legs as asymptotic_legs
+from sailviz.design.asymptotic import legs as asymptotic_legs
+from sailviz.design.asymptotic import solution as asymptotic
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
+from sailviz.steering import attitude as law
 
 ACCURACY = 1e-4
 FILE = Path(__file__).parents[1] / "design" / "reference_asymptotic.json"

@@ -15,12 +15,12 @@ from time import process_time
 import numpy as np
 import pytest
 
-from sailviz.steering import attitude as law
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN
 from sailviz.environment.solar_wind.laws import Gamma
-from sailviz.propulsion import voltage_control as control
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
+from sailviz.propulsion import voltage_control as control
+from sailviz.steering import attitude as law
 from sailviz.uncertainty.ensembles import RandomWind, fly_ensemble, fly_factors
 
 FLIGHTS, DAYS, BATCH = 10_000, 730, 8

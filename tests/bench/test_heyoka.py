@@ -12,10 +12,10 @@ from time import thread_time
 import numpy as np
 import pytest
 
-from sailviz.steering import attitude as law
 from sailviz.constants import AU, GRAVITY_AT_1_AU
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
+from sailviz.steering import attitude as law
 
 heyoka = pytest.importorskip("heyoka")
 

@@ -8,7 +8,8 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 from sailviz.constants import DAY, MU_EARTH, RADIUS_EARTH, YEAR
-from sailviz.design.decay import quasi_circular as decay, neutral_drag as decay_drag
+from sailviz.design.decay import neutral_drag as decay_drag
+from sailviz.design.decay import quasi_circular as decay
 from sailviz.environment import atmosphere
 
 POLAR, STATION = np.radians(97.8), np.radians(51.6)

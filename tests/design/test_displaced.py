@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from sailviz.steering import attitude as law
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_EARTH, MU_SUN
 from sailviz.design.displaced import orbits as displaced
 from sailviz.propagate import dynamics
 from sailviz.propulsion import electric_sail
 from sailviz.propulsion.solar_sail import FILMS, Film
+from sailviz.steering import attitude as law
 
 deg = np.radians
 PHI_MAX = np.arcsin(1 / 3)

@@ -9,15 +9,16 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
-from sailviz.steering import attitude as law
 from sailviz.constants import AU, DAY, MU_SUN
-from sailviz.design.minimum_time import costates, replay as reflight
+from sailviz.design.minimum_time import costates
+from sailviz.design.minimum_time import replay as reflight
 from sailviz.design.minimum_time.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
-from sailviz.steering.optimal import optimal_pitch
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
 from sailviz.propulsion import electric_sail, solar_sail
 from sailviz.propulsion.devices import sail
+from sailviz.steering import attitude as law
+from sailviz.steering.optimal import optimal_pitch
 
 # flight times in days and initial costates: one without a switch, two with two
 ROWS = {

@@ -9,9 +9,9 @@ import rerun as rr
 import sailviz
 from sailviz.errors import RecordingError
 from sailviz.recording import Recorder, compare, export, record
-from sailviz.run.resample import at, cost
-from sailviz.recording.timelines import take
 from sailviz.recording.contract import tables
+from sailviz.recording.timelines import take
+from sailviz.run.resample import at, cost
 
 COLUMNS = {
     "": ("time", "position", "velocity", "mass"),

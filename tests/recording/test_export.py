@@ -8,9 +8,9 @@ import pyarrow.parquet
 import pytest
 
 from sailviz.errors import RecordingError
-from sailviz.run.oem import EQUATOR_FROM_ECLIPTIC, read_oem
 from sailviz.recording import export, info, record
 from sailviz.recording.contract import tables
+from sailviz.run.oem import EQUATOR_FROM_ECLIPTIC, read_oem
 
 READERS = {"csv": pyarrow.csv.read_csv, "parquet": pyarrow.parquet.read_table}
 

@@ -5,8 +5,8 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from sailviz.cli.main import main
 from sailviz.cli.gallery import POSES, Pose, file_names, gallery, markdown, pose_of, squeezed
+from sailviz.cli.main import main
 from sailviz.recording.views.screenshot import has_vulkan
 from sailviz.shipped import shipped_scenes
 

@@ -9,15 +9,16 @@ from PIL import Image
 from sailviz import compare
 from sailviz.constants import ROTATION_EARTH
 from sailviz.frames import rtn, unit
-from sailviz.scene.quantities import spellings
 from sailviz.recording import digest, export, read, record
-from sailviz.recording.drawing import drawing, layout, orbit_plane as plane
+from sailviz.recording.drawing import drawing, layout
+from sailviz.recording.drawing import orbit_plane as plane
 from sailviz.recording.drawing.curves import Curves
 from sailviz.recording.drawing.plots import plots_of
-from sailviz.recording.timelines import Picker, take
 from sailviz.recording.drawing.samples import Frame, Samples, orbits, rings
+from sailviz.recording.timelines import Picker, take
 from sailviz.recording.views.screenshot import Studio, has_vulkan
 from sailviz.run.arrays import Shell
+from sailviz.scene.quantities import spellings
 
 DAY = 86_400.0
 RADIUS = 6_378_137.0

@@ -7,8 +7,8 @@ import pytest
 
 from sailviz.errors import RecordingError
 from sailviz.recording import Memory, read, record
-from sailviz.recording.timelines import take
 from sailviz.recording.contract import tables
+from sailviz.recording.timelines import take
 
 CONTRACT = {
     "/state": {"time_s", "position_m", "velocity_m_s", "mass_kg"},

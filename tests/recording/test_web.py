@@ -20,8 +20,8 @@ from sailviz.cli.main import main
 from sailviz.errors import RecordingError
 from sailviz.recording import record
 from sailviz.recording.drawing.style import TARGET
-from sailviz.recording.views.screenshot import has_vulkan
 from sailviz.recording.sinks import viewer_binary
+from sailviz.recording.views.screenshot import has_vulkan
 from sailviz.recording.views.viewers import WebServer, end, free_port, open_viewer
 
 BROWSER, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")

@@ -19,8 +19,8 @@ from scipy.interpolate import CubicSpline, RegularGridInterpolator
 from scipy.optimize import brentq
 
 import sailviz
-from sailviz.design.minimum_time.smoothed import smoothed_transfer
 from sailviz.checks.expectations import check
+from sailviz.design.minimum_time.smoothed import smoothed_transfer
 from sailviz.scene.sections import SteadyWind
 from sailviz.shipped import shipped_folder, shipped_scenes
 

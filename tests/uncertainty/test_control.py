@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sailviz.environment.solar_wind import pressure as solar_wind
-from sailviz.propulsion import voltage_control as law
 from sailviz.propulsion import electric_sail
+from sailviz.propulsion import voltage_control as law
 from sailviz.uncertainty import control, wind
 
 K, THETA = 2.593, 0.7793e-9

@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from sailviz.steering import attitude as steering
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN
 from sailviz.design.minimum_time.smoothed import smoothed_transfer
 from sailviz.environment.solar_wind.laws import Gamma, Lognormal
-from sailviz.propulsion import voltage_control as control
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.ensemble.draws import normals
 from sailviz.propagate.events import watch
+from sailviz.propulsion import voltage_control as control
 from sailviz.propulsion.solar_sail import FILMS
+from sailviz.steering import attitude as steering
 from sailviz.uncertainty.covariance import linear
 from sailviz.uncertainty.ensembles import GivenWind, RandomWind, ReplayedWind, fly_ensemble, fly_factors
 

@@ -7,10 +7,10 @@ import pytest
 from numba import njit
 from scipy.integrate import solve_ivp
 
-from sailviz.steering import attitude as steering
 from sailviz.constants import AU, GRAVITY_AT_1_AU
-from sailviz.propulsion import voltage_control as control
 from sailviz.propagate import dynamics
+from sailviz.propulsion import voltage_control as control
+from sailviz.steering import attitude as steering
 from sailviz.uncertainty import wind
 
 NAN = float("nan")

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.design.decay.quasi_circular import FINE, REENTRY, Descent
 from sailviz.design.decay.orbit import BRAKE_FLOOR, craft_of, setting
 from sailviz.design.decay.profiles import LEVELS, POLAR, averaged_profile
+from sailviz.design.decay.quasi_circular import FINE, REENTRY, Descent
 from sailviz.environment import atmosphere, solar_level
 
 TOLERANCE = 1e-7  # relative, of the time

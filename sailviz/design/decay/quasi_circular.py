@@ -12,7 +12,23 @@ import numpy as np
 
 from sailviz.constants import MU_EARTH, RADIUS_EARTH, YEAR
 from sailviz.design.decay.orbit import BRAKE_FLOOR, corotation_factor, craft_of, mean_radius_offset, setting
-from sailviz.design.decay.profiles import BAND, INCLINATIONS, LEVELS, REFERENCE, Fit, ForceProfile, Plasma, averaged_profile, constant, exponential, fit, log_quadratic, power_law, shipped_profile, tabulated
+from sailviz.design.decay.profiles import (
+    BAND,
+    INCLINATIONS,
+    LEVELS,
+    REFERENCE,
+    Fit,
+    ForceProfile,
+    Plasma,
+    averaged_profile,
+    constant,
+    exponential,
+    fit,
+    log_quadratic,
+    power_law,
+    shipped_profile,
+    tabulated,
+)
 
 __all__ = [
     "BAND",

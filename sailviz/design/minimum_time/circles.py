@@ -14,14 +14,14 @@ import numpy as np
 
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN, RADIUS_SUN
 from sailviz.design.minimum_time import costates as state_costate
-from sailviz.design.minimum_time.costates import Sail, canonical_sail
 from sailviz.design.minimum_time.boundary_conditions import BetweenEllipses, ToCircle, hamiltonians, polar
-from sailviz.design.minimum_time.search import Extremal, Search, follow, search, spiral_time
-from sailviz.design.minimum_time.rendezvous import rendezvous  # noqa: F401  part of this module's face
+from sailviz.design.minimum_time.costates import Sail, canonical_sail
 from sailviz.design.minimum_time.orbits import orbit_to_orbit  # noqa: F401
-from sailviz.steering.optimal import optimal_pitch
+from sailviz.design.minimum_time.rendezvous import rendezvous  # noqa: F401  part of this module's face
+from sailviz.design.minimum_time.search import Extremal, Search, follow, search, spiral_time
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film
+from sailviz.steering.optimal import optimal_pitch
 
 DIRECTIONS = (512, 2048)  # screened at first, and where those lead nowhere
 SPANS = (2.0, 3.0)  # flight times looked at, in estimates of the flight time

@@ -20,9 +20,9 @@ import numpy as np
 
 from sailviz.compiled import called, compiled
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
-from sailviz.steering.optimal import full_thrust, optimal_pitch, steer
 from sailviz.propagate import dop853_coefficients as _c
 from sailviz.propulsion.devices import ELECTRIC_SAIL, sail
+from sailviz.steering.optimal import full_thrust, optimal_pitch, steer
 
 SIZE = 12  # r (3), v (3), lam_r (3), lam_v (3)
 TIME_UNIT = np.sqrt(AU**3 / MU_SUN)  # s, 58.13 d

@@ -22,8 +22,21 @@ from sailviz import ephemeris
 from sailviz.constants import AU, MU_SUN
 from sailviz.design.minimum_time import costates
 from sailviz.design.minimum_time.costates import SPEED_UNIT, TIME_UNIT, Sail, canonical_sail
+from sailviz.design.minimum_time.orbits import (
+    LOOSE,
+    NEAR,
+    ROWS,
+    SHARPER,
+    SMOOTHING,
+    TIGHT,
+    NoGuess,
+    Path,
+    Problem,
+    planar_guess,
+    swept,
+    target_radius,
+)
 from sailviz.design.minimum_time.shooting import solve
-from sailviz.design.minimum_time.orbits import LOOSE, NEAR, ROWS, SHARPER, SMOOTHING, TIGHT, NoGuess, Path, Problem, planar_guess, swept, target_radius
 from sailviz.elements import elements
 
 SOLVED = 1e-9  # largest miss of a solution, au and 29.78 km/s

@@ -19,9 +19,17 @@ import numba
 import numpy as np
 
 from sailviz.compiled import _OPTIONS, compiled, inlined
-from sailviz.propulsion import voltage_control as law
-from sailviz.propagate.ensemble.draws import DRAWN, REPLAYED, fill_normals, looked_up, normal_quantile, seed_stream, uniform
+from sailviz.propagate.ensemble.draws import (
+    DRAWN,
+    REPLAYED,
+    fill_normals,
+    looked_up,
+    normal_quantile,
+    seed_stream,
+    uniform,
+)
 from sailviz.propagate.ensemble.motion import MERIDIAN, PLANE, step_in_plane, step_in_space
+from sailviz.propulsion import voltage_control as law
 
 BLOCK = 1024  # flights that march together: state rows stay in the second-level cache, histograms are met while hot
 BINS = 1024  # of a histogram, over twice the range of the first block: 0.2 % of that range each

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.propulsion import voltage_control as law
-from sailviz.propagate.ensemble.flights import HEIGHT, LANES, RHO, THETA, Plan, U, W, Wind, record_flights
 from sailviz.propagate.ensemble.draws import GIVEN
+from sailviz.propagate.ensemble.flights import HEIGHT, LANES, RHO, THETA, Plan, U, W, Wind, record_flights
+from sailviz.propulsion import voltage_control as law
 
 SAME = 1e-10  # of the duration: times closer than this are one
 STEP = 0.02  # first guess of a step, in units of sqrt(r^3 / mu): 1.2 days at 1 au

@@ -18,11 +18,11 @@ from dataclasses import asdict, dataclass, replace
 import numpy as np
 import pyarrow as pa
 
-from sailviz.scene.show import duration
 from sailviz.errors import RecordingError
-from sailviz.run import resample
 from sailviz.recording.comparison.tables import Evidence, Table, evidence
 from sailviz.recording.reader import is_component
+from sailviz.run import resample
+from sailviz.scene.show import duration
 
 RELATIVE = 1e-9  # default tolerance: this part of the column's largest value
 ROUNDING = 1e-14  # and no less than this for numbers of order one: angles, directions, ratios

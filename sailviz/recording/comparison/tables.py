@@ -14,7 +14,18 @@ import numpy as np
 import pyarrow as pa
 
 from sailviz.errors import RecordingError
-from sailviz.recording.reader import TIMELINES, Entity, EventRow, Recording, group_by_columns, is_component, latest_static, read, short, to_numpy
+from sailviz.recording.reader import (
+    TIMELINES,
+    Entity,
+    EventRow,
+    Recording,
+    group_by_columns,
+    is_component,
+    latest_static,
+    read,
+    short,
+    to_numpy,
+)
 from sailviz.run.arrays import Run
 
 TRUTH = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/approximation")

@@ -9,8 +9,8 @@ from rerun.blueprint.encodings import TextLogColumn, TextLogColumnKind, Timeline
 
 from sailviz.recording.drawing.ensembles import BOX, Arrival
 from sailviz.recording.drawing.layout import DESCENT, TUBE, Camera, Layout
-from sailviz.recording.drawing.style import BACKGROUND
 from sailviz.recording.drawing.plot_column import PlotView
+from sailviz.recording.drawing.style import BACKGROUND
 
 ENDLESS = rrb.TimeRangeBoundary.infinite()
 NOW = rrb.TimeRangeBoundary.cursor_relative()

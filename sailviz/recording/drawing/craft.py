@@ -10,9 +10,10 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from sailviz.recording.drawing import style as look, meshes
-from sailviz.recording.drawing.style import points
+from sailviz.recording.drawing import meshes
+from sailviz.recording.drawing import style as look
 from sailviz.recording.drawing.log import Pen, f4
+from sailviz.recording.drawing.style import points
 
 
 def draw(pen: Pen, path: str, kind: str, near: bool) -> None:

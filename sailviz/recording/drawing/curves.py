@@ -8,8 +8,8 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from sailviz.recording.drawing import style as look
 from sailviz.recording import timelines as rows
+from sailviz.recording.drawing import style as look
 from sailviz.recording.drawing.plots import plots_of
 from sailviz.recording.drawing.samples import Frame
 from sailviz.run.arrays import Run

@@ -10,16 +10,16 @@ import numpy as np
 import rerun as rr
 
 from sailviz.recording import timelines as rows
-from sailviz.recording.drawing.description import about, event_line
 from sailviz.recording.drawing.blueprint import blueprint
-from sailviz.recording.drawing.sail_close_up import SailCloseUp
-from sailviz.recording.drawing.ensembles import Clouds
 from sailviz.recording.drawing.curves import Curves
+from sailviz.recording.drawing.description import about, event_line
+from sailviz.recording.drawing.ensembles import Clouds
 from sailviz.recording.drawing.layout import Extents, Layout, lay_out
 from sailviz.recording.drawing.log import Pen
+from sailviz.recording.drawing.sail_close_up import SailCloseUp
 from sailviz.recording.drawing.samples import Frame, Samples
-from sailviz.recording.drawing.tether_close_up import TetherCloseUp
 from sailviz.recording.drawing.system_view import LADDER, STRIP, World
+from sailviz.recording.drawing.tether_close_up import TetherCloseUp
 from sailviz.run.arrays import Event, Run, Setting, join
 
 

@@ -13,14 +13,15 @@ import numpy as np
 import rerun as rr
 
 from sailviz.constants import AU
+from sailviz.recording import contract as truth
+from sailviz.recording import timelines as rows
+from sailviz.recording.contract import word
 from sailviz.recording.drawing import style as look
-from sailviz.recording import timelines as rows, contract as truth
-from sailviz.recording.drawing.style import points
 from sailviz.recording.drawing.log import Pen, f4
+from sailviz.recording.drawing.plot_column import PlotView, Slot
 from sailviz.recording.drawing.plots import nice_range
 from sailviz.recording.drawing.samples import Frame
-from sailviz.recording.drawing.plot_column import PlotView, Slot
-from sailviz.recording.contract import word
+from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Cloud, Setting
 
 PIECE = 3  # rows of a cloud in one piece of its paths

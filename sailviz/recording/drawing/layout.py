@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sailviz.frames import unit
-from sailviz.recording.drawing import cameras, style as look
 from sailviz.recording import timelines as rows
-from sailviz.recording.drawing.ensembles import Arrival, arrivals_of, slots_of
-from sailviz.recording.drawing.curves import Curves
-from sailviz.recording.drawing.samples import PLANE_TURNS, Frame, Samples
-from sailviz.recording.drawing.plot_column import Slot, column, plot_views
 from sailviz.recording.contract import word
+from sailviz.recording.drawing import cameras
+from sailviz.recording.drawing import style as look
+from sailviz.recording.drawing.curves import Curves
+from sailviz.recording.drawing.ensembles import Arrival, arrivals_of, slots_of
+from sailviz.recording.drawing.plot_column import Slot, column, plot_views
+from sailviz.recording.drawing.samples import PLANE_TURNS, Frame, Samples
 from sailviz.run.arrays import Run, Setting
 
 PUSHES = 400  # rows at which the ends of arrows are looked at

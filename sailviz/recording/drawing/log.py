@@ -6,8 +6,8 @@ import numpy as np
 import pyarrow as pa
 import rerun as rr
 
-from sailviz.recording.drawing.style import ANCHOR, points, rgba
 from sailviz.recording.drawing.meshes import Mesh
+from sailviz.recording.drawing.style import ANCHOR, points, rgba
 
 
 def f4(values) -> np.ndarray:

@@ -10,11 +10,12 @@ import numpy as np
 import rerun as rr
 
 from sailviz.frames import quaternion, to_frame, unit
-from sailviz.recording.drawing import style as look, meshes
-from sailviz.recording.drawing.style import points
+from sailviz.recording.contract import word
+from sailviz.recording.drawing import meshes
+from sailviz.recording.drawing import style as look
 from sailviz.recording.drawing.log import Pen, f4
 from sailviz.recording.drawing.samples import Frame, Samples, rings
-from sailviz.recording.contract import word
+from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Run, Shell
 
 CIRCLE = 361  # points

@@ -10,10 +10,11 @@ import rerun as rr
 
 import sailviz
 from sailviz.frames import body_axes, quaternion, unit
-from sailviz.recording.drawing import style as look, meshes
-from sailviz.recording.drawing.style import points
+from sailviz.recording.drawing import meshes
+from sailviz.recording.drawing import style as look
 from sailviz.recording.drawing.log import Pen
 from sailviz.recording.drawing.samples import Samples
+from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Run
 
 NIGHT_EDGES = np.radians(np.linspace(100, 78, 16))  # half-angles of what darkens: together a soft terminator

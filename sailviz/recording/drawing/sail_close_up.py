@@ -10,11 +10,12 @@ import numpy as np
 import rerun as rr
 
 from sailviz.frames import body_axes, quaternion, unit
-from sailviz.recording.drawing import craft, style as look
+from sailviz.recording.drawing import craft
+from sailviz.recording.drawing import style as look
 from sailviz.recording.drawing.layout import Layout
-from sailviz.recording.drawing.style import points
 from sailviz.recording.drawing.log import Pen, f4
 from sailviz.recording.drawing.samples import Samples
+from sailviz.recording.drawing.style import points
 from sailviz.recording.drawing.system_view import draw_stars
 from sailviz.run.arrays import Run
 

@@ -12,14 +12,15 @@ import numpy as np
 import rerun as rr
 
 from sailviz.frames import body_axes, from_frame, quaternion, unit
-from sailviz.recording.drawing import craft, style as look, meshes
+from sailviz.recording.contract import word
+from sailviz.recording.drawing import craft, meshes
+from sailviz.recording.drawing import style as look
 from sailviz.recording.drawing.layout import Layout
-from sailviz.recording.drawing.style import points
 from sailviz.recording.drawing.log import Pen, f4
 from sailviz.recording.drawing.orbit_plane import OrbitPlane, notes
 from sailviz.recording.drawing.planet import Planet
 from sailviz.recording.drawing.samples import PLANE_TURNS, SPARSE, Frame, Samples, arc, orbits, smooth_lines
-from sailviz.recording.contract import word
+from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Reference, Run
 
 STRIP = 4  # drawn rows in one piece of the trail

@@ -10,11 +10,12 @@ import numpy as np
 import rerun as rr
 
 from sailviz.frames import body_axes, quaternion, to_frame, unit
-from sailviz.recording.drawing import craft, style as look, meshes
-from sailviz.recording.drawing.sail_close_up import acceleration_text
+from sailviz.recording.drawing import craft, meshes
+from sailviz.recording.drawing import style as look
 from sailviz.recording.drawing.layout import Layout
 from sailviz.recording.drawing.log import Pen, f4
 from sailviz.recording.drawing.planet import about_axis, draw_air, draw_planet
+from sailviz.recording.drawing.sail_close_up import acceleration_text
 from sailviz.recording.drawing.samples import Samples
 from sailviz.recording.drawing.system_view import draw_stars
 from sailviz.run.arrays import Run

@@ -7,9 +7,9 @@ import json
 import numpy as np
 import pyarrow as pa
 
-from sailviz.scene.show import duration
 from sailviz.recording.comparison.tables import epoch_of, innermost, truth_of, views_of
 from sailviz.recording.reader import Entity, Recording, is_component, read, short
+from sailviz.scene.show import duration
 
 
 def info(source) -> dict:

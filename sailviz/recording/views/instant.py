@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 
-from sailviz.scene.show import duration
 from sailviz.errors import RecordingError
 from sailviz.recording.reader import read
+from sailviz.scene.show import duration
 from sailviz.units import UNITS
 
 TIME = UNITS["time"]

@@ -8,50 +8,53 @@
 The verbs are loaded on first use, so that `import sailviz` costs next to nothing. SI and radians throughout.
 """
 
-from functools import cache
-from importlib import import_module
+from typing import TYPE_CHECKING
 
-_WHERE = {
-    "load_scene": "sailviz.scene.loading",
-    "Scene": "sailviz.scene.loading",
-    "simulate": "sailviz.simulation.loop",
-    "simulate_blocks": "sailviz.simulation.loop",
-    "Run": "sailviz.run.arrays",
-    "record": "sailviz.recording",
-    "record_trajectory": "sailviz.run.from_arrays",
-    "read": "sailviz.recording",
-    "Recording": "sailviz.recording",
-    "compare": "sailviz.recording.comparison.compare",
-    "Comparison": "sailviz.recording.comparison.compare",
-    "sweep": "sailviz.sweeps.sweep",
-    "Sweep": "sailviz.sweeps.sweep",
-    "export": "sailviz.recording.exports",
-    "show": "sailviz.recording.views.notebook",
-    "SweepError": "sailviz.sweeps.store",
-    "SceneError": "sailviz.errors",
-    "PropagationError": "sailviz.errors",
-    "RecordingError": "sailviz.errors",
+from sailviz.lazy import lazily
+
+if TYPE_CHECKING:
+    from sailviz.errors import PropagationError as PropagationError
+    from sailviz.errors import RecordingError as RecordingError
+    from sailviz.errors import SceneError as SceneError
+    from sailviz.recording.comparison.comparer import compare as compare
+    from sailviz.recording.comparison.result import Comparison as Comparison
+    from sailviz.recording.exports import export as export
+    from sailviz.recording.reader import Recording as Recording
+    from sailviz.recording.reader import read as read
+    from sailviz.recording.views.notebook import show as show
+    from sailviz.recording.writer import record as record
+    from sailviz.recording.writer import record_trajectory as record_trajectory
+    from sailviz.run.arrays import Run as Run
+    from sailviz.scene.loading import Scene as Scene
+    from sailviz.scene.loading import load_scene as load_scene
+    from sailviz.simulation.loop import simulate as simulate
+    from sailviz.simulation.loop import simulate_blocks as simulate_blocks
+    from sailviz.sweeps.loop import Sweep as Sweep
+    from sailviz.sweeps.loop import sweep as sweep
+    from sailviz.sweeps.store import SweepError as SweepError
+
+    __version__: str
+
+_HOMES = {
+    "load_scene": "scene.loading",
+    "Scene": "scene.loading",
+    "simulate": "simulation.loop",
+    "simulate_blocks": "simulation.loop",
+    "Run": "run.arrays",
+    "record": "recording.writer",
+    "record_trajectory": "recording.writer",
+    "read": "recording.reader",
+    "Recording": "recording.reader",
+    "compare": "recording.comparison.comparer",
+    "Comparison": "recording.comparison.result",
+    "sweep": "sweeps.loop",
+    "Sweep": "sweeps.loop",
+    "export": "recording.exports",
+    "show": "recording.views.notebook",
+    "SweepError": "sweeps.store",
+    "SceneError": "errors",
+    "PropagationError": "errors",
+    "RecordingError": "errors",
+    "__version__": "version",
 }
-__all__ = [*_WHERE, "__version__"]
-
-
-@cache
-def _version() -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version("sailviz")
-    except PackageNotFoundError:  # run from a folder that was never installed
-        return "0+unknown"
-
-
-def __getattr__(name):
-    if name == "__version__":
-        return _version()
-    if name not in _WHERE:
-        raise AttributeError(f"module 'sailviz' has no attribute {name!r}")
-    return getattr(import_module(_WHERE[name]), name)
-
-
-def __dir__():
-    return sorted(__all__)
+__getattr__, __dir__, __all__ = lazily(__name__, _HOMES)

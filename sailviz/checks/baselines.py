@@ -13,7 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from sailviz.errors import RecordingError
-from sailviz.recording.comparison.compare import Comparison, compare, default_tolerance
+from sailviz.recording.comparison.comparer import compare
+from sailviz.recording.comparison.differences import default_tolerance
+from sailviz.recording.comparison.result import Comparison
 from sailviz.recording.comparison.tables import Evidence, evidence
 from sailviz.recording.exports import _atomic, _write_npz, arrays
 from sailviz.run import resample

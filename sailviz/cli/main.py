@@ -198,7 +198,7 @@ def _run_one(name, values, sinks, quiet, failures):
         }
     )
     if not quiet:
-        from sailviz.scene.show import duration
+        from sailviz.words import duration
 
         end = f", ended by {ended}" if ended else ""
         click.echo(f"{scene.title}: {duration(seconds)}, {rows:,} rows{end}")
@@ -228,7 +228,7 @@ def _rerun() -> str:
 
 
 def _say_unfinished(recorder):
-    from sailviz.scene.show import duration
+    from sailviz.words import duration
 
     for path in recorder.recorded.paths if recorder.recorded else ():
         click.echo(f"Unfinished: {path} is valid up to {duration(recorder.time)} and says so.", err=True)

@@ -78,7 +78,7 @@ def compare(a, b, atol, rtol, on, no_picture, as_json, quiet):
     Prints the largest difference of every quantity, where and when. Without --atol a quantity may differ by 1e-9 of its
     largest value. Exit code 0: equal, 1: different, 2: unreadable.
     """
-    from sailviz.recording.comparison.compare import compare as compared
+    from sailviz.recording.comparison.comparer import compare as compared
 
     with _one_sentence():
         found = compared(

@@ -65,7 +65,7 @@ def sweep(scene, vary, together, draws, seed, report, record, settings, output, 
         from sailviz.sweeps.definition import define
 
         definition, wanted = define(scene, _varied(vary), draws, seed, _listed(report), together, values_of(settings))
-        from sailviz.sweeps.sweep import fly_all
+        from sailviz.sweeps.loop import fly_all
 
         say_if_compiling(quiet)
         with _progress(path.stem, definition.flights, quiet) as progress:

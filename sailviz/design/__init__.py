@@ -1,1 +1,1 @@
-"""Closed forms and solvers: from a wish to the device and attitude that fulfil it."""
+"""Closed forms and solvers: the orbit first, then the sail that flies it."""

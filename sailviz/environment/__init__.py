@@ -1,1 +1,1 @@
-"""What surrounds the craft: gravity, solar wind, ionosphere. Knows nothing of scenes, recordings or time loops."""
+"""What surrounds a craft: gravity, sunlight, wind, plasma, air and shadow."""

@@ -1,4 +1,4 @@
-"""Figures a reader wants to see on paper: the thesis' own, redrawn from our functions, and maps of ours.
+"""Curves and maps on paper.
 
     from sailviz import figures
     figures.names()
@@ -7,73 +7,28 @@
 Needs matplotlib, which comes with the extra `plot`: pip install "sailviz[plot]".
 """
 
-from __future__ import annotations
+from typing import TYPE_CHECKING
 
-from pathlib import Path
+from sailviz.lazy import lazily
 
-from sailviz.figures.catalogue import CATALOGUE, Entry
+if TYPE_CHECKING:
+    from sailviz.figures.catalogue import CATALOGUE as CATALOGUE
+    from sailviz.figures.catalogue import Entry as Entry
+    from sailviz.figures.drawing import FORMATS as FORMATS
+    from sailviz.figures.drawing import FigureError as FigureError
+    from sailviz.figures.drawing import draw as draw
+    from sailviz.figures.drawing import figure as figure
+    from sailviz.figures.drawing import names as names
+    from sailviz.figures.drawing import title as title
 
-__all__ = ["CATALOGUE", "Entry", "FigureError", "draw", "figure", "names", "title"]
-
-FORMATS = ("png", "svg", "pdf")
-
-
-class FigureError(Exception):
-    """A figure that cannot be drawn, in one sentence."""
-
-
-def names() -> list[str]:
-    """Names of all figures, the thesis' first."""
-    return list(CATALOGUE)
-
-
-def title(name: str) -> str:
-    """What a figure shows, in one line."""
-    return _entry(name).title
-
-
-def figure(name: str, style: str = "dark", **options):
-    """A figure as a matplotlib Figure. style : "dark" or "light". options : what the figure takes; series="FILE", a
-    measured solar wind, for wind-fit."""
-    entry = _entry(name)
-    for key in options:
-        if key not in entry.takes:
-            users = [other for other, candidate in CATALOGUE.items() if key in candidate.takes]
-            raise FigureError(f"{name} takes no {key}" + (f", only {', '.join(users)} does" if users else ""))
-    try:
-        from sailviz.figures import page
-    except ImportError:
-        raise FigureError('figures need matplotlib: pip install "sailviz[plot]"') from None
-    if style not in page.STYLES:
-        raise FigureError(f"there is no style {style!r}, only {' and '.join(page.STYLES)}")
-    try:
-        return page.compose(entry, style, options)
-    except OSError as error:
-        raise FigureError(f"cannot read {error.filename}: {(error.strerror or str(error)).lower()}") from None
-    except ValueError as error:
-        if not options:
-            raise
-        raise FigureError(str(error)) from None
-
-
-def draw(name: str, path, style: str = "dark", dpi: int = 160, **options) -> Path:
-    """Draw a figure into a file, PNG, SVG or PDF by its ending. options as of `figure`. Returns the path."""
-    path = Path(path)
-    kind = path.suffix.lower().lstrip(".")
-    if kind not in FORMATS:
-        raise FigureError(f"a figure is written as {', '.join(FORMATS)}; {path.name} ends in none of them")
-    drawn = figure(name, style, **options)
-    from sailviz.figures import page
-
-    try:
-        page.save(drawn, path, dpi)
-    except OSError as error:
-        raise FigureError(f"cannot write {path}: {error.strerror.lower()}") from None
-    return path
-
-
-def _entry(name) -> Entry:
-    try:
-        return CATALOGUE[name]
-    except KeyError:
-        raise FigureError(f"there is no figure {name!r}; there are {', '.join(CATALOGUE)}") from None
+_HOMES = {
+    "CATALOGUE": "catalogue",
+    "Entry": "catalogue",
+    "FORMATS": "drawing",
+    "FigureError": "drawing",
+    "draw": "drawing",
+    "figure": "drawing",
+    "names": "drawing",
+    "title": "drawing",
+}
+__getattr__, __dir__, __all__ = lazily(__name__, _HOMES)

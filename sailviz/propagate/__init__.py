@@ -1,1 +1,1 @@
-"""The compiled propagator: one right-hand side, one integrator, events."""
+"""One right-hand side, its integrators, and ensembles of flights."""

@@ -253,3 +253,15 @@ def _not_interrupted():
         signal.signal(signal.SIGINT, before)
     if pressed:
         raise KeyboardInterrupt
+
+
+def record_trajectory(time, position, velocity, sink, *more_sinks, **options):
+    """Record a trajectory from elsewhere with the same views as a simulated one -> Recorded.
+
+    time (n,) s, increasing; position (n, 3) m and velocity (n, 3) m/s, inertial, from the central body; sink as in
+    `record`. The options are those of `trajectory`. Raises TrajectoryError (a ValueError) with every fault at once,
+    and RecordingError where the sink cannot be written.
+    """
+    from sailviz.run.from_arrays import trajectory
+
+    return record(trajectory(time, position, velocity, **options), sink, *more_sinks)

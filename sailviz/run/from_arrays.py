@@ -44,18 +44,6 @@ class TrajectoryError(RecordingError, ValueError):
         super().__init__("\n".join([f"trajectory: {count}", *(f"  {fault}" for fault in faults)]))
 
 
-def record_trajectory(time, position, velocity, sink, *more_sinks, **options):
-    """Record a trajectory from elsewhere with the same views as a simulated one -> Recorded.
-
-    time (n,) s, increasing; position (n, 3) m and velocity (n, 3) m/s, inertial, from the central body; sink as in
-    `record`. The options are those of `trajectory`. Raises TrajectoryError (a ValueError) with every fault at once,
-    and RecordingError where the sink cannot be written.
-    """
-    from sailviz.recording import record
-
-    return record(trajectory(time, position, velocity, **options), sink, *more_sinks)
-
-
 def trajectory(
     time,
     position,

@@ -7,7 +7,7 @@ from html import escape
 
 import numpy as np
 
-from sailviz.scene.show import acceleration, angle, duration, length
+from sailviz.words import acceleration, angle, duration, length
 
 MOST_EVENTS = 12
 BEYOND = 1e9  # times the distance: a semi-major axis beyond it is that of a parabola

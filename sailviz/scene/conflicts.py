@@ -6,8 +6,9 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from sailviz.constants import RADIUS_EARTH
-from sailviz.scene.faults import nearest
-from sailviz.scene.sections import HELD_STARTS, PRIMER_LAWS
+from sailviz.scene.start import HELD_STARTS
+from sailviz.scene.steering import PRIMER_LAWS
+from sailviz.words import nearest
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene

@@ -18,25 +18,18 @@ from pydantic import Field, PrivateAttr
 from pydantic_core import ValidationError
 
 from sailviz.errors import SceneError
+from sailviz.scene.body import CustomBody, Target
 from sailviz.scene.conflicts import conflicts
-from sailviz.scene.faults import convert, faults_of, locate, nearest
-from sailviz.scene.sections import (
-    Approximation,
-    Chaos,
-    CustomBody,
-    Devices,
-    Ensemble,
-    Environment,
-    Expectation,
-    Propagation,
-    Recording,
-    Section,
-    Start,
-    Steering,
-    Target,
-    Watched,
-)
+from sailviz.scene.device import Devices
+from sailviz.scene.environment import Environment
+from sailviz.scene.faults import faults_of, locate
+from sailviz.scene.sections import Approximation, Chaos, Ensemble, Expectation, Propagation, Recording, Watched
+from sailviz.scene.start import Start
+from sailviz.scene.steering import Steering
+from sailviz.scene.units_in_keys import convert
+from sailviz.scene.values import Section
 from sailviz.shipped import shipped_scenes
+from sailviz.words import nearest
 
 
 class Scene(Section):
@@ -215,6 +208,6 @@ def _validated(raw: dict, text: str, source: str) -> Scene:
 @cache
 def schema() -> dict:
     """JSON Schema of the scene file, every spelling of every quantity included, for editors and other tools."""
-    from sailviz.scene.faults import with_units
+    from sailviz.scene.json_schema import with_units
 
     return with_units(Scene.model_json_schema())

@@ -13,7 +13,8 @@ import numpy as np
 from sailviz.constants import AU, SOLAR_IRRADIANCE
 from sailviz.errors import Fault, SceneError
 from sailviz.run.arrays import Cloud
-from sailviz.simulation.plan import Plan, film_of, sail_strength
+from sailviz.simulation.device import film_of, sail_strength
+from sailviz.simulation.plan import Plan
 from sailviz.simulation.thrust_history import (
     control_row,
     electrochromic,

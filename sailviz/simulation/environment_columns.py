@@ -13,8 +13,9 @@ from sailviz.propagate import parameters as row
 from sailviz.propagate import voltage_callback as control_plug
 from sailviz.propagate.primer_callback import observe_primer
 from sailviz.propulsion.plasma_brake import validity
+from sailviz.simulation.bodies import epoch_of
 from sailviz.simulation.low_orbit import watches_shadow
-from sailviz.simulation.plan import Plan, epoch_of
+from sailviz.simulation.plan import Plan
 from sailviz.steering import attitude as law
 
 

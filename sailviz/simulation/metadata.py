@@ -16,9 +16,12 @@ from sailviz.propagate import dop853
 from sailviz.propagate import parameters as row
 from sailviz.propagate.choice import GAUSS_JACKSON
 from sailviz.run.arrays import Craft, Reference, Setting, Shell
-from sailviz.scene.sections import HELD_STARTS
-from sailviz.scene.show import parameters_in_words
-from sailviz.simulation.plan import TRACK_POINTS, Plan, epoch_of, sail_strength, third_body
+from sailviz.scene.start import HELD_STARTS
+from sailviz.simulation.bodies import epoch_of, third_body
+from sailviz.simulation.device import sail_strength
+from sailviz.simulation.parameters_in_words import parameters_in_words
+from sailviz.simulation.plan import Plan
+from sailviz.simulation.start import TRACK_POINTS
 
 SHELL_ANGLES, SHELL_STEP = 120, 25e3  # round the orbit; m between altitudes
 

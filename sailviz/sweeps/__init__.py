@@ -1,0 +1,17 @@
+"""Many flights of one scene in one table."""
+
+from typing import TYPE_CHECKING
+
+from sailviz.lazy import lazily
+
+if TYPE_CHECKING:
+    from sailviz.sweeps.loop import Sweep as Sweep
+    from sailviz.sweeps.loop import sweep as sweep
+    from sailviz.sweeps.store import SweepError as SweepError
+
+_HOMES = {
+    "sweep": "loop",
+    "Sweep": "loop",
+    "SweepError": "store",
+}
+__getattr__, __dir__, __all__ = lazily(__name__, _HOMES)

@@ -23,12 +23,15 @@ from pydantic_core import ValidationError
 import sailviz
 from sailviz.errors import Fault, SceneError
 from sailviz.scene.conflicts import conflicts
-from sailviz.scene.faults import convert, faults_of, locate, nearest
+from sailviz.scene.faults import faults_of, locate
 from sailviz.scene.loading import Scene, _find, _same_quantity, load_scene
-from sailviz.scene.sections import Expectation, Section, _one_of
+from sailviz.scene.sections import Expectation
+from sailviz.scene.units_in_keys import convert
+from sailviz.scene.values import Section, _one_of
 from sailviz.shipped import shipped_sweeps
 from sailviz.sweeps.distributions import Axis, Draw, axis, drawn, flight_seed, varied
 from sailviz.units import UNITS
+from sailviz.words import nearest
 
 PROBED = 300  # listed values of a key that are tried before the first flight
 _TIME = re.compile(r"([0-9.]+(?:e[+-]?[0-9]+)?)(" + "|".join(UNITS["time"]) + ")")

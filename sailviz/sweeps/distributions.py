@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailviz.scene.faults import nearest
+from sailviz.words import nearest
 
 MOST_VALUES = 10_000_000
 

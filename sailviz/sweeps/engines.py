@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 
-from sailviz.scene.faults import nearest
 from sailviz.sweeps.store import SweepError
+from sailviz.words import nearest
 
 ENGINES = ("processes", "threads", "serial", "dask")
 

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from sailviz.errors import Fault, PropagationError, SceneError
-from sailviz.scene.faults import nearest
 from sailviz.sweeps.definition import Definition
 from sailviz.sweeps.flight import FAILED, schema_of
+from sailviz.words import nearest
 
 _RULES = ("min", "max", "median")
 

@@ -1,0 +1,27 @@
+"""How fast a sail gets there, asked in words."""
+
+from typing import TYPE_CHECKING
+
+from sailviz.lazy import lazily
+
+if TYPE_CHECKING:
+    from sailviz.transfers.search import FlightTimes as FlightTimes
+    from sailviz.transfers.search import Place as Place
+    from sailviz.transfers.search import Solution as Solution
+    from sailviz.transfers.search import circle as circle
+    from sailviz.transfers.search import find as find
+    from sailviz.transfers.search import flight_times as flight_times
+    from sailviz.transfers.search import place as place
+    from sailviz.transfers.search import scene_of as scene_of
+
+_HOMES = {
+    "Place": "search",
+    "Solution": "search",
+    "FlightTimes": "search",
+    "find": "search",
+    "flight_times": "search",
+    "place": "search",
+    "circle": "search",
+    "scene_of": "search",
+}
+__getattr__, __dir__, __all__ = lazily(__name__, _HOMES)

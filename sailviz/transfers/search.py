@@ -24,12 +24,11 @@ from sailviz.design.minimum_time import replay as reflight
 from sailviz.design.minimum_time.circles import Transfer, circle_to_circle
 from sailviz.design.minimum_time.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
 from sailviz.design.minimum_time.orbits import OrbitTransfer, orbit_to_orbit
-from sailviz.design.minimum_time.rendezvous import Rendezvous, rendezvous
+from sailviz.design.minimum_time.planet_rendezvous import Rendezvous, rendezvous
 from sailviz.elements import Elements
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film
-from sailviz.scene.faults import nearest
-from sailviz.scene.show import length
+from sailviz.words import length, nearest
 
 # Osculating elements of 2020-01-01 (TDB), ecliptic of J2000: JPL Horizons, solution JPL#48
 CERES = Elements(2.769289292 * AU, 0.07687465, *np.radians([10.59127768, 80.30119019, 73.80896809]), 0.0)

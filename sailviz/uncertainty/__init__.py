@@ -1,1 +1,1 @@
-"""How sure an arrival is in the real wind: laws fitted and drawn, chaos expansions, covariances, voltage control."""
+"""How sure an arrival is: winds fitted, chaos expanded, ensembles flown, control judged."""

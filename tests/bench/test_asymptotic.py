@@ -25,7 +25,7 @@ from sailviz.propagate.events import watch
 from sailviz.steering import attitude as law
 
 ACCURACY = 1e-4
-FILE = Path(__file__).parents[1] / "design" / "reference_asymptotic.json"
+FILE = Path(__file__).parents[1] / "design" / "asymptotic" / "reference_asymptotic.json"
 CASES = {case["id"]: case for case in json.loads(FILE.read_text())}
 NAMES = ("A2", "A4", "A8", "A11", "A17", "A21", "A22", "A26", "A29", "A33", "A37", "A40")
 NOTHING, NO_BREAKS, FULL = watch([]), np.zeros(1), np.ones(1)

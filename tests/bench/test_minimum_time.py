@@ -13,7 +13,7 @@ import pytest
 from sailviz.constants import AU, DAY
 from sailviz.design.minimum_time.circles import circle_to_circle
 
-ROWS = json.loads((Path(__file__).parents[1] / "design" / "reference_transfers.json").read_text())
+ROWS = json.loads((Path(__file__).parents[1] / "design" / "minimum_time" / "reference_transfers.json").read_text())
 DEVICES = {
     "ideal": "ideal",
     "JPL2015": "jpl-2015",

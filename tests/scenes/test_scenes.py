@@ -21,7 +21,7 @@ from scipy.optimize import brentq
 import sailviz
 from sailviz.checks.expectations import check
 from sailviz.design.minimum_time.smoothed import smoothed_transfer
-from sailviz.scene.sections import SteadyWind
+from sailviz.scene.environment import SteadyWind
 from sailviz.shipped import shipped_folder, shipped_scenes
 
 AU, MU_SUN, MU_EARTH, RADIUS_EARTH = 149_597_870_700.0, 1.32712440018e20, 3.986004418e14, 6_378_137.0

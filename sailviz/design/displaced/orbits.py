@@ -14,7 +14,12 @@ import numpy as np
 from sailviz.constants import AU, MU_SUN
 from sailviz.design.displaced.force_shape import force_shape
 from sailviz.design.displaced.holding import Holding, Track, attitude
-from sailviz.design.displaced.stability import Stability, largest_stable_elevation, smallest_stable_rate, stability
+from sailviz.design.displaced.linear_stability import (
+    Stability,
+    largest_stable_elevation,
+    smallest_stable_rate,
+    stability,
+)
 from sailviz.design.displaced.tracks import flat_ellipse, planet_following, sampled_track, track
 
 __all__ = [

@@ -17,7 +17,7 @@ from sailviz.design.minimum_time import costates as state_costate
 from sailviz.design.minimum_time.boundary_conditions import BetweenEllipses, ToCircle, hamiltonians, polar
 from sailviz.design.minimum_time.costates import Sail, canonical_sail
 from sailviz.design.minimum_time.orbits import orbit_to_orbit  # noqa: F401
-from sailviz.design.minimum_time.rendezvous import rendezvous  # noqa: F401  part of this module's face
+from sailviz.design.minimum_time.planet_rendezvous import rendezvous  # noqa: F401  part of this module's face
 from sailviz.design.minimum_time.search import Extremal, Search, follow, search, spiral_time
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film

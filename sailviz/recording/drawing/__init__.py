@@ -1,0 +1,1 @@
+"""What a recording shows: views, entities, curves and cameras, drawn from the arrays of a run."""

@@ -9,7 +9,7 @@ import pyarrow as pa
 
 from sailviz.recording.comparison.tables import epoch_of, innermost, truth_of, views_of
 from sailviz.recording.reader import Entity, Recording, is_component, read, short
-from sailviz.scene.show import duration
+from sailviz.words import duration
 
 
 def info(source) -> dict:

@@ -6,8 +6,8 @@ import re
 
 from sailviz.errors import RecordingError
 from sailviz.recording.reader import read
-from sailviz.scene.show import duration
 from sailviz.units import UNITS
+from sailviz.words import duration
 
 TIME = UNITS["time"]
 NAMED = {"start": 0.0, "end": 1.0}

@@ -12,7 +12,7 @@ from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.design.minimum_time import costates
 from sailviz.design.minimum_time.circles import circle_to_circle, orbit_to_orbit, rendezvous
 from sailviz.design.minimum_time.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
-from sailviz.design.minimum_time.rendezvous import planet_state
+from sailviz.design.minimum_time.planet_rendezvous import planet_state
 from sailviz.elements import Elements, elements
 
 

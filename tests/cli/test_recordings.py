@@ -9,7 +9,7 @@ from click.testing import CliRunner
 from sailviz.cli.main import main
 from sailviz.constants import AU, MU_SUN
 from sailviz.elements import state
-from sailviz.run.from_arrays import record_trajectory
+from sailviz.recording.writer import record_trajectory
 
 
 def flight(path, factor=1.0, rows=80, epoch="2030-01-01"):

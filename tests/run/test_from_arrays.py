@@ -12,10 +12,11 @@ import pytest
 import sailviz
 from sailviz.constants import AU, MU_EARTH, MU_SUN, RADIUS_EARTH
 from sailviz.elements import state
+from sailviz.recording.writer import record_trajectory
 from sailviz.run.arrays import Event
-from sailviz.run.from_arrays import TrajectoryError, record_trajectory, trajectory
+from sailviz.run.from_arrays import TrajectoryError, trajectory
 
-SCRIPT = Path(__file__).parents[1] / "scenes" / "scripts" / "from_oem.py"
+SCRIPT = Path(__file__).parents[2] / "scenes" / "scripts" / "from_oem.py"
 ROWS = 50
 
 

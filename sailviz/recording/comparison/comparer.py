@@ -8,161 +8,29 @@ as well.
 
 from __future__ import annotations
 
-import difflib
 import math
 import re
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import replace
 
 import numpy as np
-import pyarrow as pa
 
 from sailviz.errors import RecordingError
+from sailviz.recording.comparison.differences import (
+    COVERED,
+    RELATIVE,
+    Difference,
+    _drawn,
+    default_tolerance,
+    difference,
+)
+from sailviz.recording.comparison.pairing import Pairing, _within
+from sailviz.recording.comparison.result import Comparison
 from sailviz.recording.comparison.tables import Evidence, Table, evidence
-from sailviz.recording.reader import is_component
+from sailviz.recording.comparison.tolerances import Tolerances
 from sailviz.run import resample
-from sailviz.scene.show import duration
-
-RELATIVE = 1e-9  # default tolerance: this part of the column's largest value
-ROUNDING = 1e-14  # and no less than this for numbers of order one: angles, directions, ratios
-FLOAT32 = 1e-5  # of the picture's float32 columns: their rounding, and what a camera can tell
-COVERED = 2.0  # how many times the estimated cost of interpolation a default tolerance covers
-SHOWN = 8  # columns of the picture that are listed
-
-UNITS = {
-    "_m_s2": "m/s²",
-    "_m_s": "m/s",
-    "_kg_m3": "kg/m³",
-    "_m3": "1/m³",
-    "_N_m": "N/m",
-    "_m": "m",
-    "_s": "s",
-    "_kg": "kg",
-    "_rad": "rad",
-    "_Pa": "Pa",
-    "_V": "V",
-    "_K": "K",
-    "_N": "N",
-}
-COMPONENTS = {"quaternion": "xyzw", "acceleration_rtn_m_s2": "rtn"}
-
-
-def unit_of(column: str) -> str:
-    """position_m -> m; "" for a pure number."""
-    return next((unit for ending, unit in UNITS.items() if column.endswith(ending)), "")
-
-
-def component_name(column: str, index: tuple[int, ...]) -> str:
-    """Which component of a vector, for people: x, y, z, or its number."""
-    if not index:
-        return ""
-    letters = COMPONENTS.get(column, "xyz")
-    return letters[index[0]] if len(index) == 1 and index[0] < len(letters) else str(list(index))
-
-
-@dataclass(frozen=True)
-class Difference:
-    """What became of one quantity. Numbers in its unit; `largest` is inf where one side is not a number.
-
-    row : step of A where the difference is largest; component : of a vector, "" for a scalar; time : s
-    """
-
-    quantity: str  # "/state:position_m"
-    unit: str
-    largest: float
-    allowed: float  # where the difference is largest
-    beyond: int  # values that differ by more than is allowed
-    values: int
-    row: int = -1
-    component: str = ""
-    time: float = math.nan
-    a: float | str = math.nan
-    b: float | str = math.nan
-    interpolation: float = 0.0  # about what interpolating adds at most; 0 where rows were paired
-
-    @property
-    def equal(self) -> bool:
-        return self.beyond == 0
-
-
-@dataclass(frozen=True)
-class Comparison:
-    """The result of `compare`. `quantities` holds every quantity compared, `faults` whatever else differs, in words,
-    `notes` what the reader should know, `picture` those columns of the picture that differ.
-    """
-
-    a: str
-    b: str
-    quantities: tuple[Difference, ...]
-    faults: tuple[str, ...]
-    notes: tuple[str, ...]
-    picture: tuple[Difference, ...] = ()
-    picture_columns: int = 0  # how many were compared
-
-    @property
-    def equal(self) -> bool:
-        return not self.faults and not self.picture and all(d.equal for d in self.quantities)
-
-    @property
-    def different(self) -> tuple[Difference, ...]:
-        """The quantities that differ by more than is allowed."""
-        return tuple(d for d in self.quantities if not d.equal)
-
-    def __getitem__(self, quantity: str) -> Difference:
-        """The difference of one quantity: comparison["/state:position_m"]."""
-        for found in (*self.quantities, *self.picture):
-            if found.quantity == quantity:
-                return found
-        raise KeyError(f"{quantity} was not compared; {', '.join(d.quantity for d in self.quantities)} were")
-
-    def table(self) -> str:
-        """Every quantity on a line of its own, the worst place of each, aligned."""
-        rows = [("", "quantity", "largest difference", "allowed", "where", "when", "A", "B")]
-        rows += [_line(d) for d in (*self.quantities, *self.picture[:SHOWN])]
-        widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-        right = {2, 3}
-        return "\n".join(
-            "  ".join(
-                c.rjust(w) if i in right else c.ljust(w) for i, (c, w) in enumerate(zip(row, widths, strict=True))
-            ).rstrip()
-            for row in rows
-        )
-
-    def verdict(self) -> str:
-        """One sentence."""
-        if self.equal:
-            picture = f", {self.picture_columns} columns of the picture" if self.picture_columns else ""
-            return f"Equal: {len(self.quantities)} quantities{picture}."
-        parts = []
-        if self.different:
-            parts.append(f"{len(self.different)} of {len(self.quantities)} quantities")
-        if self.picture:
-            parts.append(f"{len(self.picture)} of {self.picture_columns} columns of the picture")
-        if self.faults:
-            parts.append("1 other thing" if len(self.faults) == 1 else f"{len(self.faults)} other things")
-        return f"Different: {', '.join(parts)}."
-
-    def __str__(self) -> str:
-        lines = [f"A  {self.a}", f"B  {self.b}", *(f"note: {note}" for note in self.notes)]
-        lines += [self.table(), *(f"DIFFERENT  {fault}" for fault in self.faults), self.verdict()]
-        return "\n".join(lines)
-
-    def to_dict(self) -> dict:
-        """Everything, ready for JSON: NaN and infinity become null and "inf"."""
-
-        def told(difference):
-            return {key: _json(value) for key, value in asdict(difference).items()} | {"equal": difference.equal}
-
-        return {
-            "equal": self.equal,
-            "a": self.a,
-            "b": self.b,
-            "quantities": [told(d) for d in self.quantities],
-            "picture": {"columns": self.picture_columns, "different": [told(d) for d in self.picture]},
-            "faults": list(self.faults),
-            "notes": list(self.notes),
-        }
+from sailviz.words import duration
 
 
 def compare(
@@ -189,59 +57,6 @@ def compare(
         raise RecordingError(f"rows are paired on sim_time or on step, not on {on!r}")
     a, b = evidence(a), evidence(b)
     return _Comparer(a, b, Tolerances(atol, rtol), on, picture).result()
-
-
-class Tolerances:
-    """Tolerances by quantity."""
-
-    def __init__(self, atol, rtol):
-        self._atol = self._by_name(atol, "atol")
-        self._rtol = self._by_name(rtol, "rtol")
-        self._used: set[str] = {""}
-
-    @staticmethod
-    def _by_name(given, word) -> dict[str, float]:
-        if given is None:
-            return {}
-        named = dict(given) if isinstance(given, Mapping) else {"": given}
-        for name, value in named.items():
-            if not isinstance(value, int | float) or not value >= 0:
-                raise RecordingError(f"{word} {name or 'for all quantities'} must be a number >= 0, not {value!r}")
-        return {str(name): float(value) for name, value in named.items()}
-
-    def of(self, entity: str, column: str) -> tuple[float | None, float]:
-        """(atol, or None for the default; rtol) of a quantity."""
-        return self._find(self._atol, entity, column), self._find(self._rtol, entity, column) or 0.0
-
-    def _find(self, named, entity, column):
-        for name in (f"{entity}:{column}", column, entity):
-            if name in named:
-                self._used.add(name)
-                return named[name]
-        return named.get("")
-
-    def check_used(self, known) -> None:
-        """Raise RecordingError for a name that no quantity has."""
-        for name in [*self._atol, *self._rtol]:
-            if name not in self._used:
-                near = difflib.get_close_matches(name, known, 1, 0.4)
-                hint = f"; did you mean {near[0]}?" if near else ""
-                raise RecordingError(f"a tolerance is given for {name}, which neither side has{hint}")
-
-
-@dataclass(frozen=True)
-class Pairing:
-    """How the rows of A and B belong together. rows_a, rows_b index rows that are compared as they are; otherwise
-    `times` are those at which the finer side is interpolated."""
-
-    rows_a: np.ndarray | None
-    rows_b: np.ndarray | None
-    times: np.ndarray | None = None
-    finer: str = ""  # "A" | "B", the one that is interpolated
-
-    @property
-    def interpolated(self) -> bool:
-        return self.times is not None
 
 
 class _Comparer:
@@ -468,95 +283,6 @@ class _Comparer:
         return tuple(differences), count
 
 
-def default_tolerance(name: str, values) -> float:
-    """1e-9 of the column's largest value, and no less than rounding where numbers are of order one."""
-    if values.dtype.kind != "f":
-        return 0.0
-    finite = values[np.isfinite(values)]
-    largest = float(np.max(np.abs(finite))) if finite.size else 0.0
-    return max(RELATIVE * largest, ROUNDING if unit_of(name) in ("rad", "") else 0.0)
-
-
-def difference(quantity: str, a: np.ndarray, b: np.ndarray, atol: float, rtol: float) -> Difference:
-    """The largest difference of two arrays of one shape, where it is and how many exceed what is allowed. `row` is the
-    row in the arrays.
-    """
-    name = quantity.rpartition(":")[2]
-    unit = unit_of(name)
-    if not a.size:
-        return Difference(quantity, unit, 0.0, atol, 0, 0)
-    if a.dtype.kind != "f":
-        gap, allowed = np.not_equal(a, b).astype(float), np.zeros(a.shape)
-    else:
-        gap = resample.gaps(name, a, b)
-        with np.errstate(invalid="ignore"):
-            allowed = np.where(np.isfinite(a), atol + rtol * np.abs(a), atol)
-    beyond = gap > allowed
-    worst = np.argmax(np.where(beyond, gap, -1.0) if beyond.any() else gap)
-    index = tuple(int(i) for i in np.unravel_index(worst, gap.shape))
-    largest = float(gap[index])
-    found = Difference(quantity, unit, largest, float(allowed[index]), int(beyond.sum()), a.size)
-    if largest == 0:
-        return found
-    values = (_plain(a[index]), _plain(b[index]))
-    return replace(found, row=index[0], component=component_name(name, index[1:]), a=values[0], b=values[1])
-
-
-def _drawn(quantity: str, a, b, tolerances) -> Difference:
-    """The difference of two columns of the picture: (steps, Arrow column) each. Structure and whole numbers count
-    exactly, float32 to 1e-5, float64 to 1e-9 of the largest value.
-    """
-    (steps_a, values_a), (steps_b, values_b) = a, b
-    flat_a, structure_a, owner = _flat(values_a)
-    flat_b, structure_b, _ = _flat(values_b)
-    same = len(structure_a) == len(structure_b) and all(map(np.array_equal, structure_a, structure_b))
-    if not np.array_equal(steps_a, steps_b) or not same or flat_a.shape != flat_b.shape or flat_a.dtype != flat_b.dtype:
-        said = (f"{len(steps_a)} rows, {len(flat_a)} values", f"{len(steps_b)} rows, {len(flat_b)} values")
-        said = said if said[0] != said[1] else ("other rows", "other rows")
-        return Difference(quantity, "", math.inf, 0.0, 1, len(flat_a), a=said[0], b=said[1])
-    atol, rtol = tolerances
-    if flat_a.dtype.kind == "f" and atol is None:
-        largest = float(np.nanmax(np.abs(flat_a), initial=0.0))
-        part = FLOAT32 if flat_a.dtype == np.float32 else RELATIVE
-        atol = max(part * largest, 1e-12)
-    if flat_a.dtype.kind == "f":
-        flat_a, flat_b = flat_a.astype(float), flat_b.astype(float)
-    name = quantity.rpartition(":")[2]
-    width = 4 if name.startswith("quaternion") and flat_a.size % 4 == 0 else 1
-    shape = (-1, width) if width > 1 else (-1,)
-    found = difference(quantity, flat_a.reshape(shape), flat_b.reshape(shape), atol or 0.0, rtol)
-    if found.row < 0:
-        return found
-    row = int(owner[found.row * width]) if len(owner) else 0
-    return replace(found, row=int(steps_a[row]), component="")
-
-
-def _flat(column: pa.Array) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
-    """An Arrow column as flat values, the lengths of its lists level by level, and the row of each value."""
-    structure, owner = [], np.arange(len(column))
-    while is_component(column.type) or pa.types.is_fixed_size_list(column.type):
-        if is_component(column.type):
-            lengths = np.asarray(column.value_lengths().fill_null(0))
-            structure.append(lengths)
-        else:
-            lengths = np.full(len(column), column.type.list_size)
-        owner = np.repeat(owner, lengths)
-        column = column.flatten()
-    if pa.types.is_integer(column.type) or pa.types.is_floating(column.type) or pa.types.is_boolean(column.type):
-        return column.to_numpy(zero_copy_only=False), structure, owner
-    return np.array([repr(value) for value in column.to_pylist()]), structure, owner
-
-
-def _within(a: Table, b: Table, tolerance: float):
-    """(rows of A, rows of B) where every time of the shorter is one of the longer; None where it is not."""
-    short, long = (a, b) if len(a) <= len(b) else (b, a)
-    near = np.clip(np.searchsorted(long.time, short.time - tolerance), 0, len(long) - 1)
-    if np.any(np.abs(long.time[near] - short.time) > tolerance) or len(np.unique(near)) < len(near):
-        return None
-    rows = np.arange(len(short))
-    return (rows, near) if short is a else (near, rows)
-
-
 def _numbered(events) -> dict:
     """Events by name and how many of that name came before."""
     count: Counter = Counter()
@@ -570,35 +296,3 @@ def _numbered(events) -> dict:
 
 def _shape(values) -> str:
     return f"{values.shape[1]} components" if values.ndim > 1 else "1 component"
-
-
-def _plain(value):
-    return value.item() if isinstance(value, np.generic) else value
-
-
-def _json(value):
-    if isinstance(value, float) and not math.isfinite(value):
-        return None if math.isnan(value) else str(value)
-    return value
-
-
-def _line(d: Difference) -> tuple[str, ...]:
-    def number(value, digits=3):
-        if isinstance(value, str):
-            return value if len(value) < 30 else value[:27] + "..."
-        return f"{value:.{digits}g}" if isinstance(value, float) else str(value)
-
-    mark = "ok" if d.equal else "DIFFERENT"
-    unit = f" {d.unit}" if d.unit else ""
-    if d.row < 0 and d.largest == 0:
-        return mark, d.quantity, f"0{unit}", f"{d.allowed:.2g}{unit}", "", "", "", ""
-    where = (f"row {d.row}" + (f", {d.component}" if d.component else "")) if d.row >= 0 else ""
-    digits = 3
-    if isinstance(d.a, float) and d.a and math.isfinite(d.largest) and d.largest:
-        digits = min(17, max(3, math.ceil(math.log10(max(abs(d.a), 1e-300) / d.largest)) + 2))
-    largest = "not a number" if d.largest == math.inf and d.values else number(d.largest) + unit
-    if isinstance(d.a, str | bool):
-        largest = "differs"
-    when = duration(d.time) if math.isfinite(d.time) else ""
-    values = ("", "") if d.equal else (number(d.a, digits), number(d.b, digits))
-    return mark, d.quantity, largest, f"{d.allowed:.2g}{unit}", where, when, *values

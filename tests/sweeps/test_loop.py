@@ -21,7 +21,7 @@ from sailviz.cli.main import main
 from sailviz.constants import AU, MU_SUN
 from sailviz.errors import SceneError
 from sailviz.shipped import shipped_sweeps
-from sailviz.sweeps import sweep as sweeps
+from sailviz.sweeps import loop as sweeps
 from sailviz.sweeps.definition import define
 from sailviz.sweeps.distributions import varied
 from sailviz.sweeps.engines import SerialExecutor

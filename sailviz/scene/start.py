@@ -1,0 +1,153 @@
+"""Where a craft starts: the kinds of [start]."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from sailviz.scene.values import (
+    POSITIVE,
+    QUARTER_TURN,
+    Angle,
+    Length,
+    PositionVector,
+    Section,
+    Time,
+    VelocityVector,
+    _one_of,
+    _wrong,
+)
+
+
+class CartesianStart(Section):
+    """Position and velocity in the inertial frame."""
+
+    kind: Literal["cartesian"]
+    position: PositionVector
+    velocity: VelocityVector
+
+
+class ElementsStart(Section):
+    """Osculating orbital elements."""
+
+    kind: Literal["elements"]
+    semi_major_axis: Length
+    eccentricity: Annotated[float, Field(ge=0)]
+    inclination: Annotated[Angle, Field(ge=0, le=3.141592653589794)] = 0.0
+    raan: Angle = 0.0
+    argument: Angle = 0.0
+    true_anomaly: Angle = 0.0
+
+    @model_validator(mode="after")
+    def _conic(self):
+        if (self.eccentricity < 1) != (self.semi_major_axis > 0) or self.eccentricity == 1:
+            raise _wrong("an ellipse has eccentricity < 1 and semi-major axis > 0, a hyperbola > 1 and < 0")
+        return self
+
+
+class CircularStart(Section):
+    """A circular Keplerian orbit. Its size is osculating, or with mean_altitude the mean over an orbit about an oblate
+    body; its node is given as raan or as the local time at which it is passed going north."""
+
+    kind: Literal["circular"]
+    radius: Annotated[Length, POSITIVE] | None = None
+    altitude: Annotated[Length, POSITIVE] | None = None
+    mean_altitude: Annotated[Length, POSITIVE] | None = None
+    inclination: Annotated[Angle, Field(ge=0, le=3.141592653589794)] = 0.0
+    raan: Angle | None = None
+    ltan: Annotated[Time, Field(ge=0, lt=86400)] | None = None
+    argument_of_latitude: Angle = 0.0
+
+    @model_validator(mode="after")
+    def _size(self):
+        _one_of(self, "radius", "altitude", "mean_altitude")
+        if self.raan is not None and self.ltan is not None:
+            raise _wrong("needs raan or ltan, the local time of the ascending node, has both")
+        return self
+
+
+class DesignedStart(Section):
+    """On an orbit that the device is designed to hold, or a little beside it."""
+
+    position_offset: PositionVector = [0.0, 0.0, 0.0]
+    velocity_offset: VelocityVector = [0.0, 0.0, 0.0]
+
+
+class DisplacedStart(DesignedStart):
+    """On a circular displaced non-Keplerian orbit: Sun distance, elevation over the ecliptic, Omega / Omega_K."""
+
+    kind: Literal["displaced"]
+    radius: Annotated[Length, POSITIVE]
+    elevation: Annotated[Angle, QUARTER_TURN]
+    rate_ratio: Annotated[float, POSITIVE]
+    azimuth: Angle = 0.0
+
+
+class HeliostationaryStart(DesignedStart):
+    """At rest, the thrust balancing the Sun's pull."""
+
+    kind: Literal["heliostationary"]
+    radius: Annotated[Length, POSITIVE]
+    elevation: Annotated[Angle, QUARTER_TURN] = 0.0
+    azimuth: Angle = 0.0
+
+
+class LagrangeStart(DesignedStart):
+    """At an artificial Lagrange point on the line from the Sun to a planet, environment.third_body or a massless
+    Earth."""
+
+    kind: Literal["lagrange-point"]
+    radius: Annotated[Length, POSITIVE]
+
+
+class PlanetFollowingStart(DesignedStart):
+    """Over a planet on its ellipse, at its longitude, at a fixed elevation and a fixed share of its distance;
+    perihelion on the x axis."""
+
+    kind: Literal["planet-following"]
+    planet: Literal["mercury", "venus", "earth", "mars", "jupiter"] | None = None
+    semi_major_axis: Annotated[Length, POSITIVE] | None = None
+    eccentricity: Annotated[float, Field(ge=0, lt=1)] | None = None
+    elevation: Annotated[Angle, QUARTER_TURN]
+    radius_ratio: Annotated[float, POSITIVE] = 1.0
+    true_anomaly: Angle = 0.0
+
+    @model_validator(mode="after")
+    def _which(self):
+        _one_of(self, "planet", "semi_major_axis+eccentricity")
+        return self
+
+
+class FlatEllipseStart(DesignedStart):
+    """On a Keplerian ellipse lifted off the ecliptic, its focus above the Sun; perihelion on the x axis."""
+
+    kind: Literal["flat-ellipse"]
+    semi_latus_rectum: Annotated[Length, POSITIVE]
+    eccentricity: Annotated[float, Field(ge=0, lt=1)]
+    height: Length
+    mu_ratio: Annotated[float, POSITIVE] = 1.0
+    true_anomaly: Angle = 0.0
+
+
+class SpiralStart(Section):
+    """On the logarithmic spiral that the sail's lightness number and pitch allow."""
+
+    kind: Literal["spiral"]
+    radius: Annotated[Length, POSITIVE]
+    azimuth: Angle = 0.0
+
+
+Start = Annotated[
+    CartesianStart
+    | ElementsStart
+    | CircularStart
+    | DisplacedStart
+    | HeliostationaryStart
+    | LagrangeStart
+    | PlanetFollowingStart
+    | FlatEllipseStart
+    | SpiralStart,
+    Field(discriminator="kind"),
+]
+HELD_STARTS = ("displaced", "heliostationary", "lagrange-point", "planet-following", "flat-ellipse")

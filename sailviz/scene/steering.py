@@ -1,0 +1,154 @@
+"""How a craft is steered: the kinds of [steering]."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from sailviz.scene.values import HALF_TURN, POSITIVE, Angle, Angles, Length, Section, Three, Time, Times, _wrong
+
+
+class PlainSteering(Section):
+    """A law without parameters."""
+
+    kind: Literal[
+        "sun-facing", "radial", "circumferential", "tangential", "vertical", "gravity-gradient", "as designed"
+    ]
+
+
+class SpinningSteering(Section):
+    """A tether that spins, its force averaged over a turn: about the horizontal across the track, so that it lies in
+    the plane of motion, or about the velocity."""
+
+    kind: Literal["spinning"]
+    plane: Literal["along-track", "across-track"]
+
+
+class FrameSteering(Section):
+    """Pitch and clock angle fixed in the orbital frame or in the meridian plane."""
+
+    kind: Literal["orbital", "meridian"]
+    pitch: Annotated[Angle, HALF_TURN]
+    clock: Angle = 0.0
+
+
+class InertialSteering(Section):
+    """A direction fixed in space."""
+
+    kind: Literal["inertial"]
+    direction: Annotated[list[float], Three]
+
+    @model_validator(mode="after")
+    def _nonzero(self):
+        if not any(self.direction):
+            raise _wrong("direction must not be the zero vector")
+        return self
+
+
+class TableSteering(Section):
+    """Pitch, clock angle and throttle over time."""
+
+    kind: Literal["table"]
+    frame: Literal["orbital", "meridian"] = "orbital"
+    interpolation: Literal["linear", "hold", "cubic"] = "linear"
+    time: Annotated[Times, Field(min_length=2)]
+    pitch: Angles
+    clock: Angles
+    throttle: list[Annotated[float, Field(ge=0)]] | None = None
+
+    @model_validator(mode="after")
+    def _columns(self):
+        if len({len(c) for c in (self.time, self.pitch, self.clock, self.throttle) if c is not None}) > 1:
+            raise _wrong("time, pitch, clock and throttle must have the same length")
+        if any(b <= a for a, b in zip(self.time, self.time[1:], strict=False)):
+            raise _wrong("time must increase")
+        return self
+
+
+SAIL_LAW = Literal[
+    "ideal", "eta-perfect", "jpl-1978", "jpl-2015", "electric-sail", "electric-sail-original",
+    "electric-sail-updated", "electric-sail-polynomial",
+]  # fmt: skip
+
+
+class PrimerSteering(Section):
+    """What laws have in common that make the most of the thrust along a primer: the sail they reckon with, the
+    device itself unless another is named."""
+
+    reckons_with: SAIL_LAW | None = None
+
+
+class OptimalSteering(PrimerSteering):
+    """A minimum-time flight from its initial costates, canonical (mu = 1 au = 1, H = +1): three of a planar flight,
+    for the radius, the radial and the transverse speed, or six, for position and velocity."""
+
+    kind: Literal["optimal"]
+    costates: Annotated[list[float], Field(min_length=3, max_length=6)]
+
+    @model_validator(mode="after")
+    def _count(self):
+        if len(self.costates) not in (3, 6):
+            raise _wrong("costates are three numbers of a planar flight or six of any other")
+        if not any(self.costates[-len(self.costates) // 2 :]):
+            raise _wrong("the costates of velocity are all zero: they point the thrust")
+        return self
+
+
+class SmoothedSteering(Section):
+    """A fast transfer of an electric sail to another circle, its voltage falling smoothly towards the coasts; found by
+    shooting from costates of radius, radial and transverse speed (of any length) and from the run's duration. Pitch and
+    voltage are held over every `hold`."""
+
+    kind: Literal["smoothed-transfer"]
+    radius: Annotated[Length, POSITIVE]
+    costates: Annotated[list[float], Three]
+    hold: Annotated[Time, POSITIVE] = 3600.0
+    width: Annotated[float, Field(gt=0, le=1)] = 0.05
+
+    @model_validator(mode="after")
+    def _nonzero(self):
+        if not any(self.costates[1:]):
+            raise _wrong("the costates of velocity are all zero: they point the thrust")
+        return self
+
+    @property
+    def interpolation(self) -> str:
+        return "hold"
+
+
+class LocalSteering(PrimerSteering):
+    """Whatever changes one orbital element fastest at every moment."""
+
+    kind: Literal["locally-optimal"]
+    goal: Literal["energy", "semi-major-axis", "eccentricity", "inclination", "raan", "argument"]
+    sense: Literal["increase", "decrease"] = "increase"
+
+
+class LyapunovSteering(PrimerSteering):
+    """Down the distance to a target orbit, a weighted sum of squares of the equinoctial elements' misses, until its
+    root is `within`; then without thrust."""
+
+    kind: Literal["lyapunov"]
+    semi_major_axis: Annotated[Length, POSITIVE]
+    eccentricity: Annotated[float, Field(ge=0, lt=1)] = 0.0
+    inclination: Annotated[Angle, Field(ge=0, lt=3.14)] = 0.0
+    raan: Angle = 0.0
+    argument: Angle = 0.0
+    weights: Annotated[list[Annotated[float, Field(ge=0)]], Field(min_length=5, max_length=5)] = [1, 1, 1, 1, 1]
+    within: Annotated[float, POSITIVE] = 0.02
+
+
+Steering = Annotated[
+    PlainSteering
+    | FrameSteering
+    | InertialSteering
+    | TableSteering
+    | SpinningSteering
+    | OptimalSteering
+    | SmoothedSteering
+    | LocalSteering
+    | LyapunovSteering,
+    Field(discriminator="kind"),
+]
+PRIMER_LAWS = ("optimal", "locally-optimal", "lyapunov")

@@ -1,0 +1,55 @@
+"""Kinds of values in a scene file: SI inside, the unit in the key outside."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field
+from pydantic_core import PydanticCustomError
+
+from sailviz.scene.units_in_keys import Dimension
+
+Length = Annotated[float, Dimension("length")]
+Thickness = Annotated[float, Dimension("thickness")]
+Time = Annotated[float, Dimension("time")]
+Angle = Annotated[float, Dimension("angle")]
+Acceleration = Annotated[float, Dimension("acceleration")]
+Mass = Annotated[float, Dimension("mass")]
+Area = Annotated[float, Dimension("area")]
+Voltage = Annotated[float, Dimension("voltage")]
+Pressure = Annotated[float, Dimension("pressure")]
+Force = Annotated[float, Dimension("force")]
+ForcePerLength = Annotated[float, Dimension("force_per_length")]
+NumberDensity = Annotated[float, Dimension("number_density")]
+Power = Annotated[float, Dimension("power")]
+MassDensity = Annotated[float, Dimension("mass_density")]
+SolarFlux = Annotated[float, Dimension("solar_flux")]
+IonMass = Annotated[float, Dimension("ion_mass")]
+Mu = Annotated[float, Dimension("mu")]
+Three = Field(min_length=3, max_length=3)
+PositionVector = Annotated[list[float], Dimension("length"), Three]
+VelocityVector = Annotated[list[float], Dimension("speed"), Three]
+Times = Annotated[list[float], Dimension("time")]
+Angles = Annotated[list[float], Dimension("angle")]
+Intervals = Annotated[list[Annotated[list[float], Field(min_length=2, max_length=2)]], Dimension("time")]
+POSITIVE = Field(gt=0)
+HALF_TURN = Field(ge=-3.141592653589794, le=3.141592653589794)
+QUARTER_TURN = Field(ge=-1.5707963267948968, le=1.5707963267948968)
+
+
+class Section(BaseModel):
+    """A table of the scene file."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+def _wrong(message: str, **context) -> PydanticCustomError:
+    return PydanticCustomError("scene", message, context or None)
+
+
+def _one_of(section: Section, *names: str) -> None:
+    """Exactly one of several fields (or groups joined by '+') must be given."""
+    given = [name for name in names if all(getattr(section, part) is not None for part in name.split("+"))]
+    if len(given) != 1:
+        words = " or ".join(name.replace("+", " with ") for name in names)
+        raise _wrong(f"needs exactly one of {words}" + (f", has {' and '.join(given)}" if given else ""))

@@ -1,0 +1,45 @@
+"""Numbers and choices in words."""
+
+from __future__ import annotations
+
+import math
+from difflib import get_close_matches
+
+from sailviz.constants import AU, DAY, YEAR
+
+
+def length(value: float) -> str:
+    """A length in m in the unit a reader expects."""
+    if abs(value) >= 0.01 * AU:
+        return f"{value / AU:.6g} au"
+    if abs(value) >= 1e3:
+        return f"{value / 1e3:,.6g} km"
+    return f"{value:.6g} m" if abs(value) >= 0.1 else f"{value * 1e3:.6g} mm"
+
+
+def duration(value: float) -> str:
+    """A time in s in years, days, hours, minutes or seconds."""
+    for size, word in ((YEAR, "yr"), (DAY, "d"), (3600.0, "h"), (60.0, "min")):
+        if abs(value) >= size * 0.999_999:
+            return f"{value / size:.6g} {word}"
+    return f"{value:.6g} s"
+
+
+def angle(value: float) -> str:
+    """An angle in rad in degrees."""
+    return f"{math.degrees(value):.6g}°"
+
+
+def acceleration(value: float) -> str:
+    """An acceleration in m/s2 in mm/s2, or um/s2 when small."""
+    return f"{value * 1e3:.5g} mm/s²" if abs(value) >= 1e-5 else f"{value * 1e6:.5g} µm/s²"
+
+
+def nearest(word: str, words) -> str:
+    """ "Did you mean ...?" or the list of what is allowed."""
+    words = list(words)
+    low = {w.lower(): w for w in words}
+    close = get_close_matches(str(word).lower(), low, n=1, cutoff=0.6)
+    if close:
+        return f'Did you mean "{low[close[0]]}"?'
+    return f"Allowed: {', '.join(words)}." if len(words) <= 24 else ""

@@ -10,7 +10,7 @@ from sailviz.checks.closed_forms import FORMS, error
 from sailviz.elements import elements
 from sailviz.run.arrays import Attitude, Run, Thrust
 from sailviz.scene.loading import Expectation, Scene
-from sailviz.scene.quantities import of_cloud, spellings
+from sailviz.scene.quantities import of_ensemble, spellings
 
 
 @dataclass(frozen=True)
@@ -89,10 +89,10 @@ class Judge:
             self._start = float(run.time[0])
             names = {item.closed_form for item in self._expected if item.closed_form}
             self._motions = {name: FORMS[name](run) for name in names}
-            clouds = {cloud.name: cloud for cloud in run.setting.clouds}
+            ensembles = {ensemble.name: ensemble for ensemble in run.setting.ensembles}
             for i, (item, quantity) in enumerate(zip(self._expected, self._quantities, strict=True)):
-                if item.ensemble in clouds:
-                    self._found[i] = of_cloud(clouds[item.ensemble], quantity, item.statistic)
+                if item.ensemble in ensembles:
+                    self._found[i] = of_ensemble(ensembles[item.ensemble], quantity, item.statistic)
         for i, (item, quantity) in enumerate(zip(self._expected, self._quantities, strict=True)):
             if item.ensemble is not None:
                 continue

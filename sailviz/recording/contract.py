@@ -24,7 +24,7 @@ import numpy as np
 import pyarrow as pa
 import rerun as rr
 
-from sailviz.run.arrays import Cloud, Event, Run
+from sailviz.run.arrays import EnsembleStatistics, Event, Run
 
 CONTRACT = "sailviz/1"
 
@@ -80,11 +80,11 @@ def tables(run: Run) -> dict[str, dict[str, np.ndarray]]:
 ENDS = 10_000  # flights whose ends are recorded
 
 
-def cloud_path(cloud: Cloud) -> str:
+def cloud_path(cloud: EnsembleStatistics) -> str:
     return f"/ensemble/{word(cloud.name)}"
 
 
-def cloud_table(cloud: Cloud) -> dict[str, np.ndarray]:
+def cloud_table(cloud: EnsembleStatistics) -> dict[str, np.ndarray]:
     """The columns of /ensemble/NAME, (n,) or (n, k)."""
     length = np.ones((len(cloud.time), 3))
     length[:, 1] = cloud.mean[:, 0]  # azimuth becomes a way along the orbit
@@ -103,7 +103,7 @@ def cloud_table(cloud: Cloud) -> dict[str, np.ndarray]:
     }
 
 
-def cloud_facts(cloud: Cloud) -> rr.DynamicArchetype:
+def cloud_facts(cloud: EnsembleStatistics) -> rr.DynamicArchetype:
     """The static entity /ensemble/NAME/facts."""
     names = ("radius_m", "azimuth_rad", "height_m", "radial_speed_m_s", "transverse_speed_m_s", "axis_speed_m_s")
     ends = cloud.end[:ENDS]

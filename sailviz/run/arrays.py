@@ -59,7 +59,7 @@ class Shell:
 
 
 @dataclass(frozen=True)
-class Cloud:
+class EnsembleStatistics:
     """Many flights of the craft of a run, each through a wind (or sunshine) of its own. n times, SI, radians.
 
     States are cylindrical about `axes[2]`: distance from the axis m, azimuth rad counted from the start without jumps,
@@ -128,7 +128,7 @@ class Setting:
     identity: str  # hash of the resolved scene, hexadecimal
     play_duration: float = 40.0  # s of wall time that a replay takes
     shells: tuple[Shell, ...] = ()
-    clouds: tuple[Cloud, ...] = ()
+    ensembles: tuple[EnsembleStatistics, ...] = ()
 
 
 @dataclass(frozen=True)

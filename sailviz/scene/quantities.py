@@ -14,7 +14,7 @@ from sailviz.units import UNITS, spelled
 if TYPE_CHECKING:
     import numpy as np
 
-    from sailviz.run.arrays import Cloud, Run
+    from sailviz.run.arrays import EnsembleStatistics, Run
 
 DIMENSIONS = {
     "time": "time",
@@ -94,17 +94,17 @@ PLACES = {"radius": 0, "longitude": 1, "radial_speed": 3, "transverse_speed": 4}
 MEANS = {"thrust_factor": "mean_factor", "thrust_voltage": "mean_voltage", "saturated": "mean_saturated"}
 
 
-def of_cloud(cloud: Cloud, quantity: Quantity, statistic: str) -> float:
+def of_ensemble(ensemble: EnsembleStatistics, quantity: Quantity, statistic: str) -> float:
     """A statistic of the ends of an ensemble's flights, in the quantity's unit: "mean", "miss" (mean less nominal) or
     "deviation"; of thrust factor, voltage and saturation the mean over flights and time. NaN where there is none."""
     if quantity.stem in MEANS and statistic == "mean":
-        return getattr(cloud, MEANS[quantity.stem]) / quantity.factor
-    if quantity.stem not in PLACES or not cloud.planar:
+        return getattr(ensemble, MEANS[quantity.stem]) / quantity.factor
+    if quantity.stem not in PLACES or not ensemble.planar:
         return float("nan")
     k = PLACES[quantity.stem]
     value = {
-        "mean": cloud.end_mean[k],
-        "miss": cloud.end_mean[k] - cloud.nominal[-1, k],
-        "deviation": cloud.end_deviation[k],
+        "mean": ensemble.end_mean[k],
+        "miss": ensemble.end_mean[k] - ensemble.nominal[-1, k],
+        "deviation": ensemble.end_deviation[k],
     }[statistic]
     return float(value / quantity.factor)

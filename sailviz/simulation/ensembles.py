@@ -1,4 +1,4 @@
-"""Scene -> Clouds: the flights that a scene wants beside its own, each through a wind or sunshine of its own.
+"""Scene -> ensembles: the flights that a scene wants beside its own, each through a wind or sunshine of its own.
 
 Every ensemble starts, steers and pushes as the scene's craft does. What differs is the wind and what the voltage does
 about it. Statistics come from all flights, the picture from those kept.
@@ -12,7 +12,7 @@ import numpy as np
 
 from sailviz.constants import AU, SOLAR_IRRADIANCE
 from sailviz.errors import Fault, SceneError
-from sailviz.run.arrays import Cloud
+from sailviz.run.arrays import EnsembleStatistics
 from sailviz.simulation.device import film_of, sail_strength
 from sailviz.simulation.plan import Plan
 from sailviz.simulation.thrust_history import (
@@ -24,14 +24,14 @@ from sailviz.simulation.thrust_history import (
     wind_law,
 )
 
-OUTPUTS = 181  # rows of the run at which clouds are known
+OUTPUTS = 181  # rows of the run at which ensembles are known
 RECORDED = 1024  # flights known at every one of them, for histograms
 BINS = 48
 TABLES = ("table", "smoothed-transfer")
 
 
-def clouds_of(p: Plan, output) -> tuple[Cloud, ...]:
-    """The clouds of a plan, at some of the times of its output rows. SceneError where flights cannot be flown."""
+def ensembles_of(p: Plan, output) -> tuple[EnsembleStatistics, ...]:
+    """The ensembles of a plan, at some of the times of its output rows. SceneError where flights cannot be flown."""
     scene = p.scene
     if not scene.ensemble and not scene.chaos:
         return ()
@@ -98,7 +98,7 @@ def _wind(p: Plan, item, place):
     return made, seed, reference_pressure(wind, law), words
 
 
-def _drawn(p: Plan, item, place, step, times) -> Cloud:
+def _drawn(p: Plan, item, place, step, times) -> EnsembleStatistics:
     """Monte Carlo."""
     from sailviz.uncertainty.ensembles import fly_ensemble
 
@@ -122,7 +122,7 @@ def _drawn(p: Plan, item, place, step, times) -> Cloud:
         **options,
     )
     ensemble = replace(ensemble, time=times)
-    return _cloud(p, item, law, words, step, ensemble, "monte-carlo", more)
+    return _statistics(p, item, law, words, step, ensemble, "monte-carlo", more)
 
 
 def _sunshine(p: Plan, item, law, times):
@@ -145,20 +145,20 @@ def _sunshine(p: Plan, item, law, times):
     return GivenWind(SOLAR_IRRADIANCE * factors, light.redraw), seed, row, "the Sun's cycle and flicker", more
 
 
-def _expanded(p: Plan, item, place, step, times) -> Cloud:
+def _expanded(p: Plan, item, place, step, times) -> EnsembleStatistics:
     """Polynomial chaos: the flights at the nodes, and what they tell of all."""
     from sailviz.uncertainty import chaos
-    from sailviz.uncertainty.ensembles import LEVELS, GivenWind, fly_ensemble
+    from sailviz.uncertainty.ensembles import LEVELS, Ensemble, GivenWind, fly_ensemble
 
     wind = item.solar_wind or p.scene.environment.solar_wind
     law, drawn = _control(p, item), wind_law(wind)
     row = control_row(law, p.scene, reference_pressure(wind, drawn))
-    flown = []
+    flights: list[Ensemble] = []
 
     def fly(pressures):
         given = GivenWind(pressures[:, None], np.inf)
         duration = p.scene.propagation.duration
-        swarm = fly_ensemble(
+        flown = fly_ensemble(
             p.position,
             p.velocity,
             duration,
@@ -169,97 +169,97 @@ def _expanded(p: Plan, item, place, step, times) -> Cloud:
             keep=len(pressures),
             **_craft(p),
         )
-        flown.append(swarm)
-        parts = [swarm.kept, *(q.kept[..., None] for q in (swarm.factor, swarm.voltage, swarm.pressure))]
+        flights.append(flown)
+        parts = [flown.kept, *(q.kept[..., None] for q in (flown.factor, flown.voltage, flown.pressure))]
         return np.concatenate(parts, axis=-1)
 
     found = chaos.expand(fly, drawn.shape, drawn.scale, item.order, item.basis)
-    swarm = flown[0]
+    flown = flights[0]
     spread = found.coefficients[1:, :, :6]
     at = found.percentile(np.array(LEVELS))
     ensemble = replace(
-        swarm,
+        flown,
         time=times,
         mean=found.mean[:, :6],
         covariance=np.einsum("ntk,ntl->tkl", spread, spread),
         percentiles=at[..., :6],
-        factor=replace(swarm.factor, percentiles=at[..., 6]),
-        voltage=replace(swarm.voltage, percentiles=at[..., 7]),
-        pressure=replace(swarm.pressure, percentiles=at[..., 8]),
+        factor=replace(flown.factor, percentiles=at[..., 6]),
+        voltage=replace(flown.voltage, percentiles=at[..., 7]),
+        pressure=replace(flown.pressure, percentiles=at[..., 8]),
     )
     words = f"gamma, {drawn.mean * 1e9:.3g} nPa, constant"
-    return _cloud(p, item, law, words, step, ensemble, "polynomial-chaos", {}, float(np.max(found.tail[-1, :2])))
+    return _statistics(p, item, law, words, step, ensemble, "polynomial-chaos", {}, float(np.max(found.tail[-1, :2])))
 
 
-def _cloud(p: Plan, item, law, wind, step, swarm, method, more, tail=0.0) -> Cloud:
-    """A Cloud from an Ensemble. more : further quantities of the recorded flights, name with unit -> (k, n)."""
+def _statistics(p: Plan, item, law, wind, step, flown, method, more, tail=0.0) -> EnsembleStatistics:
+    """What a recording says of flights. more : further quantities of the recorded flights, name with unit -> (k, n)."""
     electric = p.scene.device.kind == "electric-sail"
-    planar = not np.any(swarm.nominal[:, [2, 5]]) and not np.any(swarm.kept[..., 2])
+    planar = not np.any(flown.nominal[:, [2, 5]]) and not np.any(flown.kept[..., 2])
     names = ("radius_m" if planar else "axis_distance_m", "azimuth_rad", "height_m")
     names += ("radial_speed_m_s", "transverse_speed_m_s", "axis_speed_m_s")
     wanted = [k for k in range(6) if not planar or k not in (2, 5)]
-    bands = {names[k]: swarm.percentiles[..., k] for k in wanted}
-    one = {"thrust_factor": swarm.factor.kept[0]}
-    bands["thrust_factor"] = swarm.factor.percentiles
+    bands = {names[k]: flown.percentiles[..., k] for k in wanted}
+    one = {"thrust_factor": flown.factor.kept[0]}
+    bands["thrust_factor"] = flown.factor.percentiles
     if electric:
-        bands |= {"thrust_voltage_V": swarm.voltage.percentiles, "solar_wind_pressure_Pa": swarm.pressure.percentiles}
-        one |= {"thrust_voltage_V": swarm.voltage.kept[0], "solar_wind_pressure_Pa": swarm.pressure.kept[0]}
+        bands |= {"thrust_voltage_V": flown.voltage.percentiles, "solar_wind_pressure_Pa": flown.pressure.percentiles}
+        one |= {"thrust_voltage_V": flown.voltage.kept[0], "solar_wind_pressure_Pa": flown.pressure.kept[0]}
     for name, values in more.items():
-        bands[name] = np.percentile(values, swarm.levels, axis=0)
+        bands[name] = np.percentile(values, flown.levels, axis=0)
         one[name] = values[0]
-    miss = swarm.kept - swarm.nominal
-    across = swarm.nominal[:, 0]
+    miss = flown.kept - flown.nominal
+    across = flown.nominal[:, 0]
     distance = np.sqrt(miss[..., 0] ** 2 + (across * miss[..., 1]) ** 2 + miss[..., 2] ** 2)
-    keep = len(swarm.kept) if method == "polynomial-chaos" else min(item.keep, len(swarm.kept))
+    keep = len(flown.kept) if method == "polynomial-chaos" else min(item.keep, len(flown.kept))
     control = None if law is None else law.kind
-    mean, deviation = swarm.mean, swarm.standard_deviation
-    end_mean, end_deviation = swarm.mean[-1], deviation[-1]
+    mean, deviation = flown.mean, flown.standard_deviation
+    end_mean, end_deviation = flown.mean[-1], deviation[-1]
     if method == "monte-carlo":
-        end_mean, end_deviation = swarm.end.mean(axis=0), swarm.end.std(axis=0, ddof=1)
-    limits = _limits(law, swarm) if electric else {}
-    return Cloud(
+        end_mean, end_deviation = flown.end.mean(axis=0), flown.end.std(axis=0, ddof=1)
+    limits = _limits(law, flown) if electric else {}
+    return EnsembleStatistics(
         name=item.name,
         words=_words(law, electric),
         wind=wind,
         method=method,
         control=control or "none",
-        flights=swarm.flights,
-        seed=int(swarm.seed),
+        flights=flown.flights,
+        seed=int(flown.seed),
         planar=bool(planar),
         step=step,
-        time=swarm.time,
-        axes=swarm.axes,
-        nominal=swarm.nominal,
-        kept=swarm.kept[:keep],
+        time=flown.time,
+        axes=flown.axes,
+        nominal=flown.nominal,
+        kept=flown.kept[:keep],
         mean=mean,
-        covariance=swarm.covariance,
-        levels=swarm.levels,
+        covariance=flown.covariance,
+        levels=flown.levels,
         percentiles=bands,
         one=one,
-        saturated=swarm.saturated,
-        end=swarm.end,
+        saturated=flown.saturated,
+        end=flown.end,
         end_mean=end_mean,
         end_deviation=end_deviation,
-        mean_factor=float(np.mean(swarm.flight_factor)),
-        mean_voltage=float(np.mean(swarm.flight_voltage)) if electric else float("nan"),
-        mean_saturated=float(np.mean(swarm.flight_saturated)) if electric else 0.0,
+        mean_factor=float(np.mean(flown.flight_factor)),
+        mean_voltage=float(np.mean(flown.flight_voltage)) if electric else float("nan"),
+        mean_saturated=float(np.mean(flown.flight_saturated)) if electric else 0.0,
         limits=limits,
         miss=distance,
-        error=float(max(swarm.error, 0.0)),
+        error=float(max(flown.error, 0.0)),
         tail=tail,
     )
 
 
-def _limits(law, swarm) -> dict[str, float]:
+def _limits(law, flown) -> dict[str, float]:
     """What bounds the voltage, V and Pa."""
     from sailviz.propulsion import voltage_control as control
 
-    row = swarm.control
-    found = {"nominal_voltage_V": float(row[control.NOMINAL]), "reference_pressure_Pa": swarm.reference_pressure}
+    row = flown.control
+    found = {"nominal_voltage_V": float(row[control.NOMINAL]), "reference_pressure_Pa": flown.reference_pressure}
     if law is not None:
         found["maximum_voltage_V"] = float(row[control.MAXIMUM])
         slope = (row[control.MAXIMUM] - row[control.WIND]) / (row[control.NOMINAL] - row[control.WIND])
-        found["saturation_pressure_Pa"] = swarm.reference_pressure / slope**2
+        found["saturation_pressure_Pa"] = flown.reference_pressure / slope**2
     return found
 
 
@@ -271,13 +271,13 @@ def _words(law, electric) -> str:
     return f"{law.kind} law, at most {law.maximum_voltage / 1e3:g} kV"
 
 
-def _with_histograms(found) -> tuple[Cloud, ...]:
-    """The same clouds with histograms of how far flights are from the nominal one, all in the same bins."""
-    top = max(float(np.percentile(cloud.miss[:, -1], 99)) for cloud in found)
+def _with_histograms(found) -> tuple[EnsembleStatistics, ...]:
+    """The same ensembles with histograms of how far flights are from the nominal one, all in the same bins."""
+    top = max(float(np.percentile(one.miss[:, -1], 99)) for one in found)
     edges = np.linspace(0.0, 1.05 * max(top, 1e-9 * AU), BINS + 1)
     done = []
-    for cloud in found:
-        place = np.minimum(np.searchsorted(edges, cloud.miss, side="right") - 1, BINS - 1)
+    for one in found:
+        place = np.minimum(np.searchsorted(edges, one.miss, side="right") - 1, BINS - 1)
         counts = np.array([np.bincount(column, minlength=BINS) for column in place.T])
-        done.append(replace(cloud, histogram_edges=edges, histogram=counts / len(cloud.miss)))
+        done.append(replace(one, histogram_edges=edges, histogram=counts / len(one.miss)))
     return tuple(done)

@@ -87,7 +87,7 @@ def _blocks(p: Plan, block_rows, progress, drawn):
     run = p.scene.propagation
     output = OutputTimes(run)
     rows = output.rows
-    clouds = _clouds(p, output) if drawn or any(item.ensemble for item in p.scene.expect) else ()
+    ensembles = _ensembles(p, output) if drawn or any(item.ensemble for item in p.scene.expect) else ()
     integrator = INTEGRATORS[p.choice.integrator]
     state = integrator.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
     setting = None
@@ -113,7 +113,7 @@ def _blocks(p: Plan, block_rows, progress, drawn):
         if len(columns[0]):
             if setting is None:
                 planets = planets_in_view(p) if drawn else {}
-                setting = setting_of(p, planets, rows, clouds)
+                setting = setting_of(p, planets, rows, ensembles)
             block = _observed(p, *columns, first, off_time)
             yield replace(
                 block,
@@ -133,13 +133,13 @@ def _blocks(p: Plan, block_rows, progress, drawn):
             return
 
 
-def _clouds(p: Plan, output):
+def _ensembles(p: Plan, output):
     """The flights beside the scene's own; what they need is imported only where a scene has them."""
     if not p.scene.ensemble and not p.scene.chaos:
         return ()
-    from sailviz.simulation.ensembles import clouds_of
+    from sailviz.simulation.ensembles import ensembles_of
 
-    return clouds_of(p, output)
+    return ensembles_of(p, output)
 
 
 def _fill(p: Plan, state, times, switches, output_rows, progress):

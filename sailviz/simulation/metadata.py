@@ -26,7 +26,7 @@ from sailviz.simulation.start import TRACK_POINTS
 SHELL_ANGLES, SHELL_STEP = 120, 25e3  # round the orbit; m between altitudes
 
 
-def setting_of(p: Plan, planets, rows, clouds=()) -> Setting:
+def setting_of(p: Plan, planets, rows, ensembles=()) -> Setting:
     scene = p.scene
     duration = scene.propagation.duration
     return Setting(
@@ -54,7 +54,7 @@ def setting_of(p: Plan, planets, rows, clouds=()) -> Setting:
         identity=p.identity,
         play_duration=scene.recording.play_duration,
         shells=_shells(p),
-        clouds=clouds,
+        ensembles=ensembles,
     )
 
 

@@ -81,7 +81,7 @@ def of_run(run: Run, label: str) -> Evidence:
 
     steps = run.first + np.arange(len(run))
     found = {entity: Table(steps, run.time, table) for entity, table in tables(run).items() if table}
-    for cloud in run.setting.clouds:
+    for cloud in run.setting.ensembles:
         found[cloud_path(cloud)] = Table(cloud.step, cloud.time, cloud_table(cloud))
     events = sorted(run.events, key=lambda event: event.time)
     rows = np.minimum(np.searchsorted(run.time, [event.time for event in events], side="left"), len(run) - 1)

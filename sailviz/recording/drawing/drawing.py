@@ -73,7 +73,7 @@ class Drawing:
         close_up = TetherCloseUp if self._setting.craft.kind == "plasma-brake" else SailCloseUp
         self._close_up = close_up(self._pen, block)
         self._curves = Curves(self._pen, block, self._frame)
-        self._clouds = Clouds(self._pen, self._setting, self._frame) if self._setting.clouds else None
+        self._clouds = Clouds(self._pen, self._setting, self._frame) if self._setting.ensembles else None
         text = about(self._setting, self._world.notes)
         self._pen.static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
         start = rows.timelines(self._setting, [block.first], block.time[:1])

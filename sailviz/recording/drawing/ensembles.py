@@ -22,7 +22,7 @@ from sailviz.recording.drawing.plot_column import PlotView, Slot
 from sailviz.recording.drawing.plots import nice_range
 from sailviz.recording.drawing.samples import Frame
 from sailviz.recording.drawing.style import points
-from sailviz.run.arrays import Cloud, Setting
+from sailviz.run.arrays import EnsembleStatistics, Setting
 
 PIECE = 3  # rows of a cloud in one piece of its paths
 RING = 49  # points of an ellipse
@@ -87,7 +87,7 @@ def color_of(k: int) -> list[int]:
     return look.SERIES[1 + k % 4]
 
 
-def band_values(cloud: Cloud, band: Band) -> np.ndarray:
+def band_values(cloud: EnsembleStatistics, band: Band) -> np.ndarray:
     """Percentiles (m, n) as plotted."""
     values = cloud.percentiles[band.key]
     if band.column is not None:
@@ -100,28 +100,28 @@ class Clouds:
 
     def __init__(self, pen: Pen, setting: Setting, frame: Frame):
         self._pen, self._setting, self._frame = pen, setting, frame
-        for k, cloud in enumerate(setting.clouds):
+        for k, cloud in enumerate(setting.ensembles):
             self._write_truth(cloud)
             self._draw_space(cloud, color_of(k))
             self._draw_plots(cloud, color_of(k), first=k == 0)
             if cloud.method == "monte-carlo":
                 self._draw_histogram(cloud, color_of(k))
-        self._draw_nominal(setting.clouds[0])
+        self._draw_nominal(setting.ensembles[0])
         self.arrivals = arrivals_of(setting)
         for arrival in self.arrivals:
             self._draw_axes(arrival)
-            for k, cloud in enumerate(setting.clouds):
+            for k, cloud in enumerate(setting.ensembles):
                 self._draw_arrival(arrival, cloud, color_of(k))
 
-    def _index(self, cloud: Cloud, some=slice(None)) -> list:
+    def _index(self, cloud: EnsembleStatistics, some=slice(None)) -> list:
         return rows.timelines(self._setting, cloud.step[some], cloud.time[some])
 
-    def _write_truth(self, cloud: Cloud) -> None:
+    def _write_truth(self, cloud: EnsembleStatistics) -> None:
         path = truth.cloud_path(cloud)
         self._pen.columns(path, self._index(cloud), truth.columns(path, truth.cloud_table(cloud)))
         self._pen.static(f"{path}/facts", truth.cloud_facts(cloud))
 
-    def _draw_space(self, cloud: Cloud, color) -> None:
+    def _draw_space(self, cloud: EnsembleStatistics, color) -> None:
         pen, path, unit = self._pen, f"/world/cloud/{word(cloud.name)}", self._frame.unit
         places = cloud.places(cloud.kept) / unit  # (k, n, 3)
         pen.strip_style(f"{path}/flights", look.dim(color, 0.5), look.WIDTH["flight"])
@@ -143,7 +143,7 @@ class Clouds:
         if cloud.planar:
             self._draw_tube(cloud, color, f"{path}/tube")
 
-    def _draw_tube(self, cloud: Cloud, color, path: str) -> None:
+    def _draw_tube(self, cloud: EnsembleStatistics, color, path: str) -> None:
         """Percentiles of the distance at the median azimuth."""
         pen, unit = self._pen, self._frame.unit
         levels = len(cloud.levels)
@@ -156,7 +156,7 @@ class Clouds:
         pen.lines(f"{path}/median", [edges[levels // 2]], look.dim(color, 0.85), look.WIDTH["past"])
         pen.lines(f"{path}/edges", [edges[0], edges[-1]], look.dim(color, 0.6), look.WIDTH["future"])
 
-    def _draw_nominal(self, cloud: Cloud) -> None:
+    def _draw_nominal(self, cloud: EnsembleStatistics) -> None:
         pen, line = self._pen, cloud.places(cloud.nominal) / self._frame.unit
         pen.strip_style("/world/nominal/path", look.NOMINAL, look.WIDTH["nominal"])
         starts = np.arange(0, len(line) - 1, PIECE)
@@ -170,10 +170,10 @@ class Clouds:
         outwards = line * (1 + 0.10 * np.abs(line).max() / np.maximum(np.linalg.norm(line, axis=1), 1e-9))[:, None]
         pen.labels("/world/nominal/name", self._index(cloud), outwards)
 
-    def _draw_plots(self, cloud: Cloud, color, first: bool) -> None:
+    def _draw_plots(self, cloud: EnsembleStatistics, color, first: bool) -> None:
         pen, index = self._pen, self._index(cloud)
         names = [f"{level:g}" for level in cloud.levels]
-        same_wind = len({(c.wind, c.seed) for c in self._setting.clouds}) == 1
+        same_wind = len({(c.wind, c.seed) for c in self._setting.ensembles}) == 1
         for key in cloud.percentiles:
             band = BANDS.get(key)
             if band is None or (key in DRIVERS and same_wind and not first):
@@ -208,7 +208,7 @@ class Clouds:
             pen.columns(path, index, rr.Scalars.columns(scalars=100 * cloud.saturated))
         self._draw_limits(cloud)
 
-    def _draw_limits(self, cloud: Cloud) -> None:
+    def _draw_limits(self, cloud: EnsembleStatistics) -> None:
         """Horizontal lines: where the voltage ends, and the pressure below which it does."""
         ends = [0, -1]
         index = rows.timelines(self._setting, cloud.step[ends], cloud.time[ends])
@@ -234,7 +234,7 @@ class Clouds:
                 middle, half = 0.5 * factor * (value + top), 0.5 * factor * (top - value)
                 self._pen.columns(path, index, rr.Measurements.columns(values=[middle] * 2, variances=[half**2] * 2))
 
-    def _draw_histogram(self, cloud: Cloud, color) -> None:
+    def _draw_histogram(self, cloud: EnsembleStatistics, color) -> None:
         edges = cloud.histogram_edges / MILLI_AU
         middle = 0.5 * (edges[1:] + edges[:-1])
         self._pen.bars(
@@ -266,7 +266,7 @@ class Clouds:
         pen.static(f"{path}/names", rr.Points2D(f4(words), **style))
         pen.static(f"{path}/nominal", rr.Points2D([f4(origin)], radii=points(3.0), colors=[look.NOMINAL]))
 
-    def _draw_arrival(self, arrival: Arrival, cloud: Cloud, color) -> None:
+    def _draw_arrival(self, arrival: Arrival, cloud: EnsembleStatistics, color) -> None:
         pen, path, index = self._pen, f"{arrival.path}/{word(cloud.name)}", self._index(cloud)
 
         def plane(states):
@@ -289,7 +289,7 @@ class Clouds:
             pen.columns(f"{path}/sigma{k + 1}", index, rr.LineStrips2D.columns(strips=f4(ring)))
 
 
-def ellipses(cloud: Cloud) -> list[np.ndarray]:
+def ellipses(cloud: EnsembleStatistics) -> list[np.ndarray]:
     """For each sigma the ring (n, RING, 3) of distance and azimuth about their mean, at the mean height: an ellipse in
     these coordinates, bent along the orbit in space."""
     block = cloud.covariance[:, :2, :2]
@@ -309,7 +309,7 @@ def ellipses(cloud: Cloud) -> list[np.ndarray]:
 def arrivals_of(setting: Setting) -> tuple[Arrival, ...]:
     """A plane for all clouds, and one for the narrowest where it would be lost in that."""
     reach = []  # of each cloud: lowest and highest distance and azimuth within three sigma, whenever
-    for cloud in setting.clouds:
+    for cloud in setting.ensembles:
         off = cloud.mean[:, :2] - cloud.nominal[:, :2]
         wide = 3.0 * np.sqrt(np.maximum(np.diagonal(cloud.covariance, axis1=1, axis2=2)[:, :2], 0.0))
         reach.append([np.minimum((off - wide).min(axis=0), 0.0), np.maximum((off + wide).max(axis=0), 0.0)])
@@ -325,7 +325,7 @@ def arrivals_of(setting: Setting) -> tuple[Arrival, ...]:
 
     planes = [plane("Off nominal", "/arrival/all", reach[:, 0].min(axis=0), reach[:, 1].max(axis=0))]
     if np.all(size[narrow] > 2 * least) and size[:, 0].max() > WIDER * size[narrow, 0]:
-        planes.append(plane(f"Near: {setting.clouds[narrow].name}", "/arrival/near", *reach[narrow]))
+        planes.append(plane(f"Near: {setting.ensembles[narrow].name}", "/arrival/near", *reach[narrow]))
     return tuple(planes)
 
 
@@ -342,18 +342,19 @@ def ticks(ends) -> np.ndarray:
 
 def slots_of(setting: Setting, shown, environment) -> tuple[Slot, ...]:
     """The column of curves of a run with clouds; what the craft itself did stands behind, as tabs."""
-    keys = [key for key in BANDS if any(key in cloud.percentiles for cloud in setting.clouds)]
+    keys = [key for key in BANDS if any(key in cloud.percentiles for cloud in setting.ensembles)]
     own = {plot.paths[0]: plot for plot in (*shown, *(plot for group in environment for plot in group))}
 
     def view(key: str) -> PlotView:
-        values = np.concatenate([band_values(c, BANDS[key]).ravel() for c in setting.clouds if key in c.percentiles])
+        values = np.concatenate([band_values(c, BANDS[key]).ravel() for c in setting.ensembles if key in c.percentiles])
         paths = [f"/plots/ensemble/{key}/**"]
         low, high = float(values.min()), float(values.max())
         if key == "thrust_voltage_V":
-            limits = [c.limits.get("maximum_voltage_V", 0.0) for c in setting.clouds]
+            limits = [c.limits.get("maximum_voltage_V", 0.0) for c in setting.ensembles]
             low, high = min(low, 0.0), max(high, 1.08e-3 * max(limits))
         if key in DRIVERS:
-            one = np.concatenate([BANDS[key].factor * cloud.one[key] for cloud in setting.clouds if key in cloud.one])
+            driven = [c for c in setting.ensembles if key in c.one]
+            one = np.concatenate([BANDS[key].factor * cloud.one[key] for cloud in driven])
             low, high = min(low, one.min()), max(high, one.max())
         low, high = nice_range(low, high)
         return PlotView(BANDS[key].title, tuple(paths), low, high)
@@ -364,8 +365,8 @@ def slots_of(setting: Setting, shown, environment) -> tuple[Slot, ...]:
     places, speeds = group(*PLACES), group(*SPEEDS)
     acting = group(*DRIVERS)
     setting_it = group("thrust_voltage_V", "electrochromic_state")
-    if any(cloud.control in ("pressure", "distance") for cloud in setting.clouds):
-        top = 100 * max(float(cloud.saturated.max()) for cloud in setting.clouds)
+    if any(cloud.control in ("pressure", "distance") for cloud in setting.ensembles):
+        top = 100 * max(float(cloud.saturated.max()) for cloud in setting.ensembles)
         low, high = nice_range(0.0, max(top, 1.0))
         setting_it.append(PlotView("Flights at the largest voltage [%]", ("/plots/ensemble/saturated/**",), low, high))
     pushing = group("thrust_factor")
@@ -383,11 +384,11 @@ def slots_of(setting: Setting, shown, environment) -> tuple[Slot, ...]:
 
 def scoreboard(setting: Setting) -> list[str]:
     """Lines of Markdown: how far each cloud ends from the nominal flight, mean ± standard deviation."""
-    if not setting.clouds:
+    if not setting.ensembles:
         return []
     lines = ["", "| end − nominal | r, 10⁻³ au | azimuth, ° | out, km/s | across, km/s |", "|---|---|---|---|---|"]
     factors = {0: 1 / MILLI_AU, 1: 180 / np.pi, 3: 1e-3, 4: 1e-3}
-    for cloud in setting.clouds:
+    for cloud in setting.ensembles:
         off = cloud.end_mean - cloud.nominal[-1]
         cells = [spread(off[k] * factor, cloud.end_deviation[k] * factor) for k, factor in factors.items()]
         lines.append(f"| **{cloud.name}** | {' | '.join(cells)} |")
@@ -398,7 +399,7 @@ def legend(setting: Setting) -> list[str]:
     """What the colours mean, one line each."""
     names = {0: "orange", 1: "green", 2: "pink", 3: "violet"}
     lines = []
-    for k, cloud in enumerate(setting.clouds):
+    for k, cloud in enumerate(setting.ensembles):
         flights = f"{cloud.flights:,} flights" + (", gPC" if cloud.method == "polynomial-chaos" else "")
         lines.append(f"**{names[k % 4]}**: {cloud.name} ({cloud.words}; {flights})")
     return lines

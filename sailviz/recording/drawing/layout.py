@@ -107,11 +107,11 @@ class Extents:
 def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) -> Layout:
     """The layout of a run that reaches as far as `extents` says."""
     references = [float(np.linalg.norm(r.points, axis=1).max()) for r in setting.references if r.role != "planet"]
-    spread = [float(cloud.percentiles.get("radius_m", cloud.nominal[:, :1].T).max()) for cloud in setting.clouds]
+    spread = [float(cloud.percentiles.get("radius_m", cloud.nominal[:, :1].T).max()) for cloud in setting.ensembles]
     radius = max([extents.farthest, *references, *spread]) / frame.unit
     middle = Samples.of(extents.middle, np.array([extents.middle.first]), frame)
     sail = look.SAIL.get(setting.craft.kind, 0.1) * radius
-    sail *= look.AMONG_MANY if setting.clouds else 1.0
+    sail *= look.AMONG_MANY if setting.ensembles else 1.0
     tether = 0.0
     if not frame.sun and setting.body.radius > 0:
         sail = 0.14 * radius if setting.craft.kind == "plasma-brake" else sail
@@ -121,7 +121,7 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
     still = extents.farthest - extents.nearest < DEPARTING * extents.farthest
     closed = bool(still and turns > 1.2 and not frame.sparse)
     thrust_scale = look.THRUST_LENGTH * radius / extents.thrust if extents.thrust > 0 else 1.0
-    thrust_scale *= look.AMONG_MANY if setting.clouds else 1.0
+    thrust_scale *= look.AMONG_MANY if setting.ensembles else 1.0
     if frame.sun or setting.body.radius == 0:
         tips = extents.tips(thrust_scale * frame.unit) / frame.unit
         views = about_sun(radius, extents.lowest / frame.unit, extents.highest / frame.unit, tips, middle, setting)
@@ -134,7 +134,7 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
     shown, environment = plot_views(curves, frame, setting.craft.kind not in ("plasma-brake", "none"))
     lanes = tuple(lane for lane, changes in curves.changes.items() if changes)
     slots, lane_share = column(shown, environment, lanes)
-    if setting.clouds:
+    if setting.ensembles:
         slots, lanes = slots_of(setting, shown, environment), ()
         names = (*names, replace(names[0], name=TUBE))
     return Layout(
@@ -159,8 +159,8 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
         speed=(extents.reached if extents.finished and extents.reached > 0 else setting.duration)
         / setting.play_duration,
         rows_per_second=setting.rows / setting.duration,
-        arrivals=arrivals_of(setting) if setting.clouds else (),
-        clouds=tuple(word(cloud.name) for cloud in setting.clouds),
+        arrivals=arrivals_of(setting) if setting.ensembles else (),
+        clouds=tuple(word(cloud.name) for cloud in setting.ensembles),
     )
 
 
@@ -204,7 +204,7 @@ def about_sun(radius: float, lowest: float, highest: float, tips, middle: Sample
     nearer = 0.0 if lifted else -0.3 * radius
     middle_of_view = np.array([0.0, nearer, 0.02 * radius + raised])
     distance = max(distance, distance_to_see(tips, middle_of_view, direction))
-    if setting.clouds:  # steeper and closer: clouds lie in the plane of motion
+    if setting.ensembles:  # steeper and closer: clouds lie in the plane of motion
         direction, distance = unit(np.array([0.05, -0.76, 0.65])), 1.92 * radius
         if lifted:
             direction, distance = unit(np.array([0.08, -0.88, 0.47])), max(1.92 * radius, half / 0.38)

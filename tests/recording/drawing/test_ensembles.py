@@ -44,7 +44,7 @@ def recorded(run, tmp_path_factory):
 
 def test_ensemble_of_a_scene_spreads_as_its_linear_covariance(run):
     """The spread that the sensitivities to 60 daily draws add up to; 400 flights know a deviation to 3.5 %."""
-    cloud = run.setting.clouds[0]
+    cloud = run.setting.ensembles[0]
     start = run.position[0], run.velocity[0]
     options = {"pitch": np.radians(40), "characteristic_acceleration": 1e-3}
 
@@ -59,7 +59,7 @@ def test_ensemble_of_a_scene_spreads_as_its_linear_covariance(run):
 
 def test_controlled_flights_stay_closer_and_clouds_end_where_the_nominal_run_does(run):
     calm = simulate(load_scene(SCENE | {"environment": {}, "ensemble": []}))
-    free, held = run.setting.clouds
+    free, held = run.setting.ensembles
     for cloud in (free, held):
         assert np.abs(cloud.places(cloud.nominal[-1]) - calm.position[-1]).max() / AU < 1e-7
         assert np.array_equal(cloud.time, run.time[cloud.step])
@@ -69,7 +69,7 @@ def test_controlled_flights_stay_closer_and_clouds_end_where_the_nominal_run_doe
 
 def test_truth_of_a_cloud_comes_back_bit_for_bit(run, recorded):
     recording = read(recorded)
-    for cloud, name in zip(run.setting.clouds, ("no_control", "held"), strict=True):
+    for cloud, name in zip(run.setting.ensembles, ("no_control", "held"), strict=True):
         table = recording[f"/ensemble/{name}"]
         assert np.array_equal(table["time_s"], cloud.time)
         assert np.array_equal(table["radius_m"], cloud.percentiles["radius_m"].T)
@@ -84,7 +84,7 @@ def test_truth_of_a_cloud_comes_back_bit_for_bit(run, recorded):
 
 
 def test_covariance_of_the_recording_is_that_of_the_flights_along_and_across_the_orbit(run, recorded):
-    cloud = run.setting.clouds[0]
+    cloud = run.setting.ensembles[0]
     found = read(recorded)["/ensemble/no_control"]["covariance_m2"][-1].reshape(3, 3)
     way = cloud.end[:, :2] * [1.0, cloud.mean[-1, 0]]
     assert found[:2, :2] == pytest.approx(np.cov(way.T, ddof=0), rel=0.02)
@@ -92,7 +92,7 @@ def test_covariance_of_the_recording_is_that_of_the_flights_along_and_across_the
 
 
 def test_ellipses_are_level_lines_of_the_covariance(run):
-    cloud = run.setting.clouds[0]
+    cloud = run.setting.ensembles[0]
     inverse = np.linalg.inv(cloud.covariance[-1, :2, :2] * np.outer([1 / AU, 1.0], [1 / AU, 1.0]))
     for sigma, ring in zip(SIGMAS, ellipses(cloud), strict=True):
         off = (ring[-1, :, :2] - cloud.mean[-1, :2]) / [AU, 1.0]
@@ -100,9 +100,9 @@ def test_ellipses_are_level_lines_of_the_covariance(run):
 
 
 def test_histograms_count_every_recorded_flight(run):
-    for cloud in run.setting.clouds:
+    for cloud in run.setting.ensembles:
         assert cloud.histogram.sum(axis=1) == pytest.approx(np.ones(len(cloud.time)))
-    assert run.setting.clouds[0].histogram[0, 0] == 1  # all begin together
+    assert run.setting.ensembles[0].histogram[0, 0] == 1  # all begin together
 
 
 def test_recordings_with_clouds_compare_export_and_tell(run, recorded, tmp_path):
@@ -124,8 +124,8 @@ def test_recordings_with_clouds_compare_export_and_tell(run, recorded, tmp_path)
 
 
 def test_one_flight_of_a_thousand_does_not_depend_on_how_many_fly(run):
-    fewer = simulate(load_scene(SCENE, {"ensemble.0.flights": 50})).setting.clouds[0]
-    assert np.array_equal(fewer.end, run.setting.clouds[0].end[:50])
+    fewer = simulate(load_scene(SCENE, {"ensemble.0.flights": 50})).setting.ensembles[0]
+    assert np.array_equal(fewer.end, run.setting.ensembles[0].end[:50])
 
 
 @pytest.mark.parametrize(

@@ -53,3 +53,7 @@ class PropagationError(SailvizError):
 
 class RecordingError(SailvizError):
     """A recording that cannot be written or read, in one sentence."""
+
+
+class OutputError(RecordingError):
+    """A file that cannot be written, in one sentence; what stood under its name before is untouched."""

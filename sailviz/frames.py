@@ -97,3 +97,44 @@ def pitch_cone_clock(axes, normal, thrust):
     clock = np.where(sideways > 1e-12, np.mod(np.arctan2(n_t, n_h), 2 * np.pi), 0.0)
     clock = np.where(clock > 2 * np.pi - 1e-12, 0.0, clock)  # a rounding error below zero is zero
     return pitch, cone, clock
+
+
+OBLIQUITY = np.radians(84_381.448 / 3600)  # of the ecliptic of J2000: IAU 1976, as in JPL's ECLIPJ2000
+EQUATOR_FROM_ECLIPTIC = np.array(
+    [
+        [1.0, 0.0, 0.0],
+        [0.0, np.cos(OBLIQUITY), -np.sin(OBLIQUITY)],
+        [0.0, np.sin(OBLIQUITY), np.cos(OBLIQUITY)],
+    ]
+)
+_ARCSECOND = np.pi / 180 / 3600
+
+
+def centuries_since_j2000(utc: np.datetime64) -> float:
+    """Julian centuries of TT since J2000 of a UTC date; the minute between the two turns the equator by 1e-4 arcsec."""
+    return float((utc - np.datetime64("2000-01-01T11:58:55.816", "ns")) / np.timedelta64(1, "s")) / (36_525 * 86_400)
+
+
+def precession(centuries: float) -> np.ndarray:
+    """Rotation (3, 3) from the mean equator and equinox of J2000 to that of a date, Julian centuries of TT since J2000.
+
+    IAU 2006 precession, the angles zeta, z, theta of N. Capitaine, P. T. Wallace, J. Chapront, A&A 412, 567 (2003),
+    equation (40); nutation (up to 19 arcsec) and the frame bias (0.02 arcsec) are neglected.
+    """
+    t = centuries
+    zeta = 2.650545 + t * (2306.083227 + t * (0.2988499 + t * (0.01801828 - t * (5.971e-6 + t * 3.173e-7))))
+    z = -2.650545 + t * (2306.077181 + t * (1.0927348 + t * (0.01826837 - t * (2.8596e-5 + t * 2.904e-7))))
+    theta = t * (2004.191903 - t * (0.4294934 + t * (0.04182264 + t * (7.089e-6 + t * 1.274e-7))))
+    return _turn_z(-z * _ARCSECOND) @ _turn_y(theta * _ARCSECOND) @ _turn_z(-zeta * _ARCSECOND)
+
+
+def _turn_z(angle: float) -> np.ndarray:
+    """Components of a vector in axes turned by an angle, rad, about z."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+
+
+def _turn_y(angle: float) -> np.ndarray:
+    """Components of a vector in axes turned by an angle, rad, about y."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]])

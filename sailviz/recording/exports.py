@@ -199,11 +199,14 @@ def to_oem(source, path, frame: str = "") -> Path:
     """Write position and velocity as an orbit ephemeris message.
 
     Runs round the Sun are computed in the ecliptic of J2000: they are rotated into EME2000, or left as they are with
-    frame = "ECLIPJ2000", a name that not every reader knows. Runs round the Earth are computed in its equator without
-    precession and are named EME2000. Another body's frame is not known: it must be named, and nothing is rotated.
-    RecordingError without an epoch: an ephemeris message dates every row.
+    frame = "ECLIPJ2000", a name that not every reader knows. Runs round the Earth are computed in the mean equator of
+    their first date, which is turned to that of J2000; nutation, up to 19 arcsec, is neglected. Another body's frame is
+    not known: it must be named, and nothing is rotated. RecordingError without an epoch: an ephemeris message dates
+    every row.
     """
-    from sailviz.run.oem import ECLIPTIC, EQUATOR, EQUATOR_FROM_ECLIPTIC, Ephemeris, write_oem
+    from sailviz.frames import EQUATOR_FROM_ECLIPTIC, centuries_since_j2000, precession
+    from sailviz.run.oem import ECLIPTIC, EQUATOR, Ephemeris
+    from sailviz.run.oem_writer import plain, write_oem
 
     data = evidence(source)
     if "/state" not in data.entities:
@@ -227,10 +230,11 @@ def to_oem(source, path, frame: str = "") -> Path:
     elif body == "Sun":
         comments.append("ECLIPJ2000: x to the equinox of J2000, z to the pole of the ecliptic of J2000")
     elif body == "Earth":
-        comments.append("computed in an equator that does not precess (0.014 deg a year); taken for that of J2000")
-    comments.append("UTC without leap seconds between the rows")
+        turn = precession(centuries_since_j2000(data.epoch))  # J2000 -> mean equator of the run's date
+        position, velocity = position @ turn, velocity @ turn
+        comments.append("computed in the mean equator of the first row's date; turned to J2000, nutation neglected")
     ephemeris = Ephemeris(
-        _word(data.facts.get("title", "")) or "TRAJECTORY",
+        plain(str(data.facts.get("title", ""))).upper()[:60] or "TRAJECTORY",
         str(data.facts.get("identity", "")) or "UNKNOWN",
         body.upper(),
         frame,
@@ -241,11 +245,6 @@ def to_oem(source, path, frame: str = "") -> Path:
         velocity,
     )
     return write_oem(path, ephemeris, comments)
-
-
-def _word(text: str) -> str:
-    """What an OEM can print, in capitals."""
-    return " ".join("".join(c for c in text if c.isascii() and c.isprintable()).split()).upper()[:60]
 
 
 def _checked_times(state: Table, label: str) -> np.ndarray:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sailviz.run.from_arrays import trajectory as trajectory
     from sailviz.run.oem import Ephemeris as Ephemeris
     from sailviz.run.oem import read_oem as read_oem
-    from sailviz.run.oem import write_oem as write_oem
+    from sailviz.run.oem_writer import write_oem as write_oem
 
 _HOMES = {
     "Attitude": "arrays",
@@ -34,6 +34,6 @@ _HOMES = {
     "trajectory": "from_arrays",
     "Ephemeris": "oem",
     "read_oem": "oem",
-    "write_oem": "oem",
+    "write_oem": "oem_writer",
 }
 __getattr__, __dir__, __all__ = lazily(__name__, _HOMES)

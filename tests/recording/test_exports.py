@@ -8,9 +8,10 @@ import pyarrow.parquet
 import pytest
 
 from sailviz.errors import RecordingError
+from sailviz.frames import EQUATOR_FROM_ECLIPTIC
 from sailviz.recording import export, info, record
 from sailviz.recording.contract import tables
-from sailviz.run.oem import EQUATOR_FROM_ECLIPTIC, read_oem
+from sailviz.run.oem import read_oem
 
 READERS = {"csv": pyarrow.csv.read_csv, "parquet": pyarrow.parquet.read_table}
 
@@ -87,13 +88,31 @@ def test_a_run_round_the_sun_is_rotated_into_the_equator_of_j2000(runs, tmp_path
     assert np.abs(read_oem(file).position - run.position).max() < 1e-4
 
 
-def test_a_run_round_the_earth_stays_in_its_equator_and_says_what_that_neglects(runs, tmp_path):
+def test_a_run_round_the_earth_is_turned_from_the_equator_of_its_date_to_that_of_j2000(runs, tmp_path):
     run = runs.descent(rows=80)
     (file,) = export(run, tmp_path / "run.oem")
     back = read_oem(file)
     assert (back.center, back.frame) == ("EARTH", "EME2000")
-    assert np.abs(back.position - run.position).max() < 1e-8
-    assert "does not precess" in file.read_text()
+    assert "nutation neglected" in file.read_text()
+    turned = np.degrees(np.arccos(np.sum(back.position * run.position, axis=1) / np.sum(run.position**2, axis=1))).max()
+    assert turned == pytest.approx(
+        30 * 50.29 / 3600, rel=0.1
+    )  # deg: 50.29 arcsec a year of general precession since 2000
+    home = back.in_equator_of_date()
+    assert home.frame == "MOD"
+    assert np.abs(home.position - run.position).max() < 1e-7  # m
+    assert np.abs(home.velocity - run.velocity).max() < 1e-10
+
+
+def test_line_breaks_and_keywords_in_a_title_do_not_become_lines_of_the_message(runs, tmp_path):
+    run = runs.descent(rows=20)
+    title = "META_STOP\nSECOND = line\r\n\x85COMMENT \u2028über\x00all"
+    run = replace(run, setting=replace(run.setting, title=title))
+    (file,) = export(run, tmp_path / "run.oem")
+    lines = file.read_text(encoding="ascii").splitlines()
+    assert not [line for line in lines if line.startswith("SECOND")]
+    assert lines.count("META_STOP") == 1
+    assert read_oem(file).name.startswith("- META_STOP SECOND = LINE")
 
 
 def test_another_reader_agrees_with_what_was_written(runs, tmp_path):
@@ -138,65 +157,6 @@ def test_an_ephemeris_needs_an_epoch_and_a_frame(runs, tmp_path):
         export(vesta, tmp_path / "run.oem")
     (file,) = export(vesta, tmp_path / "run.oem", frame="VESTA_FIXED")
     assert read_oem(file).center == "VESTA"
-
-
-OEM = """CCSDS_OEM_VERS = 2.0
-COMMENT of a mission
-CREATION_DATE = 2026-01-01T00:00:00
-ORIGINATOR = X
-META_START
-OBJECT_NAME = THING
-OBJECT_ID = 2020-001A
-CENTER_NAME = Earth
-REF_FRAME = EME2000
-TIME_SYSTEM = TDB
-START_TIME = 2026-01-01T00:00:00
-STOP_TIME = 2026-01-01T00:02:00
-META_STOP
-2026-01-01T00:00:00.5 7000 0 0 0 7.5 0
-2026-001T00:01:00.5Z 6990 450 0 -0.5 7.49 0 0.001 0 0
-COVARIANCE_START
-EPOCH = 2026-01-01T00:00:00
-1e-3
-COVARIANCE_STOP
-META_START
-OBJECT_NAME = THING
-OBJECT_ID = 2020-001A
-CENTER_NAME = EARTH
-REF_FRAME = EME2000
-TIME_SYSTEM = TDB
-START_TIME = 2026-01-01T00:01:00.5
-STOP_TIME = 2026-01-01T00:02:00.5
-META_STOP
-2026-01-01T00:01:00.5 6991 450 0 -0.5 7.49 0
-2026-01-01T00:02:00.5 6970 900 0 -1.0 7.4 0
-"""
-
-
-def test_messages_of_others_are_read(tmp_path):
-    (tmp_path / "a.oem").write_text(OEM.replace("Earth", "EARTH"))
-    found = read_oem(tmp_path / "a.oem")
-    assert found.time.tolist() == [0.0, 60.0, 120.0]
-    assert found.position[1].tolist() == [6991e3, 450e3, 0.0]  # the later segment counts
-    assert found.utc == np.datetime64("2025-12-31T23:58:51.316")
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "word"),
-    [
-        ("CCSDS_OEM_VERS = 2.0", "hello", "does not begin with"),
-        ("CCSDS_OEM_VERS = 2.0", "<?xml version='1.0'?>", "XML"),
-        ("7000 0 0", "7000 x 0", "line 14: an epoch and six numbers"),
-        ("2026-01-01T00:00:00.5", "yesterday", "an epoch cannot be read"),
-        ("REF_FRAME = EME2000", "REF_FRAME = TEME", "changes its REF_FRAME"),
-        ("2026-01-01T00:02:00.5 6970", "2026-01-01T00:00:20.5 6970", "do not increase"),
-    ],
-)
-def test_messages_that_are_none_are_refused_in_one_sentence(old, new, word, tmp_path):
-    (tmp_path / "a.oem").write_text(OEM.replace("Earth", "EARTH").replace(old, new, 1))
-    with pytest.raises(RecordingError, match=word) as error:
-        read_oem(tmp_path / "a.oem")
-    assert "\n" not in str(error.value)
 
 
 def test_a_recording_is_described(any_run, path):

@@ -180,7 +180,7 @@ def test_the_example_refuses_a_body_it_does_not_know(tmp_path):
     text = SCRIPT.with_name("displaced.oem").read_text().replace("= SUN", "= CERES")
     (tmp_path / "a.oem").write_text(text)
     done = subprocess.run([sys.executable, SCRIPT, tmp_path / "a.oem"], capture_output=True, text=True, cwd=tmp_path)
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert "no gravitational parameter for Ceres" in done.stderr
 
 

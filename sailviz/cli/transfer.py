@@ -60,8 +60,8 @@ def transfer(
     sails = sails or ("ideal",)
     try:
         _agree(target, radius_au, inclination_deg, orbits, date, window, sails, as_table, output, acceleration)
+        from sailviz import transfers
         from sailviz.design.minimum_time import costates
-        from sailviz.transfers import search as transfers
 
         _say_if_compiling(costates.propagate_batch, quiet or as_json)
         start = transfers.place(origin)
@@ -181,7 +181,7 @@ def _words(transfers, found):
 
 def _unit(found):
     """The canonical unit of time, d."""
-    from sailviz.design.minimum_time.costates import TIME_UNIT
+    from sailviz.design.minimum_time.state_costate import TIME_UNIT
 
     radius = found.origin.orbit.semi_major_axis / AU if found.kind == "circles" else 1.0
     return radius**1.5 * TIME_UNIT / DAY
@@ -225,8 +225,10 @@ def _table(transfers, start, end, sails, quiet, as_json):
     """Flight times over the acceleration, one column per sail."""
     import numpy as np
 
+    from sailviz.design.minimum_time.state_costate import canonical_sail
+
     for sail in sails:
-        transfers.canonical_sail(sail, 1e-3)  # ValueError for what is no sail, before the work begins
+        canonical_sail(sail, 1e-3)  # ValueError for what is no sail, before the work begins
     with _progress(f"{start.name} to {end.name}", quiet or as_json) as progress:
         found = transfers.flight_times(start, end, sails, np.array(TABLE_MM_S2) * 1e-3, progress=progress)
     if as_json:

@@ -9,10 +9,14 @@ from __future__ import annotations
 
 import csv
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
+from sailviz import transfers
+from sailviz.constants import DAY
+from sailviz.design.minimum_time import rendezvous
 from sailviz.shipped import shipped_folder
 
 TARGETS = ("mercury", "venus", "mars", "ceres")
@@ -30,7 +34,7 @@ TIMES, WINDOW_FILE = "transfer_times.csv", "launch_windows.csv"
 def flight_times() -> dict[tuple[str, str], np.ndarray]:
     """(target, device) -> rows (n, 3): acceleration mm/s2, flight time d (NaN where none was found), revolutions;
     from the Earth, between circles."""
-    found: dict = {}
+    found: dict[tuple[str, str], list[list[float]]] = {}
     for row in _rows(TIMES):
         numbers = [float(row[name]) for name in ("acceleration_mm_s2", "time_d", "revolutions")]
         found.setdefault((row["target"], row["device"]), []).append(numbers)
@@ -39,7 +43,7 @@ def flight_times() -> dict[tuple[str, str], np.ndarray]:
 
 def launch_windows() -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Target -> departures (n,) datetime64 and flight times (n,) d, NaN where none was found."""
-    found: dict = {}
+    found: dict[str, list[tuple[np.datetime64, float]]] = {}
     for row in _rows(WINDOW_FILE):
         found.setdefault(row["target"], []).append((np.datetime64(row["departure"], "s"), float(row["time_d"])))
     return {
@@ -48,36 +52,36 @@ def launch_windows() -> dict[str, tuple[np.ndarray, np.ndarray]]:
     }
 
 
-def _rows(name):
+def _rows(name: str) -> Iterator[dict[str, str]]:
     with open(shipped_folder("assets") / name, newline="", encoding="utf-8") as file:
         yield from csv.DictReader(file)
 
 
 def compute_times(path: Path) -> None:
     """Search every flight anew; rows are written as they are found."""
-    from sailviz.transfers import search as transfers
-
     wanted = {(t, d, a) for t in TARGETS for d in OVER_ACCELERATION for a in ACCELERATIONS}
     wanted |= {(t, d, 1.0) for t in TARGETS[:3] for d in COMPARED}
     with open(path, "w", newline="", encoding="utf-8") as file:
         file.write("target,device,acceleration_mm_s2,time_d,revolutions\n")
         for target, device, a in sorted(wanted, key=lambda x: (TARGETS.index(x[0]), x[1], -x[2])):
             flight = transfers.find("earth", target, device, a * 1e-3).flight
-            file.write(f"{target},{device},{a:g},{flight.time / 86400:.4f},{flight.revolutions:.4f}\n")
+            file.write(f"{target},{device},{a:g},{flight.time / DAY:.4f},{flight.revolutions:.4f}\n")
             file.flush()
 
 
 def compute_windows(path: Path) -> None:
     """Search every departure anew."""
-    from sailviz.transfers import search as transfers
-
     with open(path, "w", newline="", encoding="utf-8") as file:
         file.write("target,departure,time_d\n")
         for target, (first, last, dates) in WINDOWS.items():
-            options = {"departure": (first, last), "dates": dates}
-            flight = transfers.find("earth", target, WINDOW_DEVICE, WINDOW_ACCELERATION * 1e-3, **options).flight
-            departures = np.append(flight.window.departures, flight.departure).astype("datetime64[s]")
-            times = np.append(flight.window.times, flight.time) / 86400
+            flight = rendezvous(
+                target.capitalize(), (first, last), WINDOW_DEVICE, WINDOW_ACCELERATION * 1e-3, dates=dates
+            )
+            curve = flight.window
+            if curve is None:
+                raise RuntimeError(f"no flight to {target} was found between {first} and {last}")
+            departures = np.append(curve.departures, flight.departure).astype("datetime64[s]")
+            times = np.append(curve.times, flight.time) / DAY
             for i in np.argsort(departures):
                 file.write(f"{target},{departures[i]},{times[i]:.4f}\n")
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.compiled import compiled, inlined
 from sailviz.propulsion.devices import SOLAR_SAIL, sail
@@ -22,6 +23,12 @@ from sailviz.propulsion.solar_sail import FILMS, Film
 
 POLYNOMIAL_LIMIT = np.radians(70.0)  # the fit's range; the largest cone angle lies at 54.84 deg
 NEARLY_AXIAL = 1e-9  # sine of the primer angle below which the tangent of the pitch is linear in it
+
+
+# Places in the numbers of a sail, see `devices.sail`: its strength comes first, then those of a film or of an E-sail
+STRENGTH = 0
+B1, B2, B3 = 1, 2, 3
+MODEL, LARGEST_PITCH = 1, 2
 
 
 @inlined
@@ -185,7 +192,7 @@ def steer(device, p, at, c, s, eps):
     Off is h = f_r = f_t = 0: a film then stands edge-on, an E-sail keeps the pitch it would thrust with.
     """
     if device == SOLAR_SAIL:
-        b1, b2, b3 = p[at + 1], p[at + 2], p[at + 3]
+        b1, b2, b3 = p[at + B1], p[at + B2], p[at + B3]
         along, across, found = _film_pitch(b1, b2, b3, c, s)
         if not found:
             return 0.0, 1.0, 0.0, 0.0, 0.0
@@ -193,21 +200,21 @@ def steer(device, p, at, c, s, eps):
         h = c * f_r + s * f_t
         if h <= 0.0 and eps == 0.0:
             return 0.0, 1.0, 0.0, 0.0, 0.0
-    elif p[at + 1] == FINAL:
+    elif p[at + MODEL] == FINAL:
         along, across = np.sqrt(0.5 * (1.0 + c)), np.sqrt(0.5 * (1.0 - c))
         if c > 0.0:
             across = 0.5 * s / along  # no cancellation where the primer is nearly radial
         elif across > 0.0:
             along = 0.5 * s / across
         h, f_r, f_t = 0.25 * (1.0 + 3.0 * c), 0.25 * (3.0 + c), 0.25 * s
-    elif p[at + 1] == POLYNOMIAL:
+    elif p[at + MODEL] == POLYNOMIAL:
         d = _polynomial_pitch(c, s)
         phi, _, _, gamma, _, _ = _polynomial(d)
         along, across = np.cos(np.radians(d)), np.sin(np.radians(d))
         f_r, f_t = gamma * np.cos(np.radians(phi)), gamma * np.sin(np.radians(phi))
         h = c * f_r + s * f_t
     else:
-        f_r, f_t = np.cos(0.5 * p[at + 2]), np.sin(0.5 * p[at + 2])
+        f_r, f_t = np.cos(0.5 * p[at + LARGEST_PITCH]), np.sin(0.5 * p[at + LARGEST_PITCH])
         if c > f_r:  # the thrust reaches the primer itself
             f_r, f_t = c, s
         along, across = f_r * f_r - f_t * f_t, 2.0 * f_r * f_t  # (3.34): the pitch is twice the cone angle
@@ -223,11 +230,11 @@ def steer(device, p, at, c, s, eps):
 def full_thrust(device, p, at, r, au):
     """a_c (r_E / r)^k and the exponent k of the sail of parameters p[at:] at the distance r; au in the unit of r."""
     if device == SOLAR_SAIL:
-        return p[at] * (p[at + 1] + p[at + 2] + p[at + 3]) / (r * r), 2.0
+        return p[at + STRENGTH] * (p[at + B1] + p[at + B2] + p[at + B3]) / (r * r), 2.0
     near = au / r
-    if p[at + 1] == ORIGINAL:
-        return p[at] * near ** (7.0 / 6.0), 7.0 / 6.0
-    return p[at] * near, 1.0
+    if p[at + MODEL] == ORIGINAL:
+        return p[at + STRENGTH] * near ** (7.0 / 6.0), 7.0 / 6.0
+    return p[at + STRENGTH] * near, 1.0
 
 
 @inlined
@@ -282,7 +289,7 @@ def towards_primer_analytic(p, at, ux, uy, uz, lx, ly, lz):
     c, s, tx, ty, tz = _across(ux, uy, uz, lx, ly, lz)
     if c == 0.0 and s == 0.0:
         return tx, ty, tz, 0.0
-    along, across, on = analytic_film(p[at + 1], p[at + 2], c, s)
+    along, across, on = analytic_film(p[at + B1], p[at + B2], c, s)
     return along * ux + across * tx, along * uy + across * ty, along * uz + across * tz, 1.0 if on else 0.0
 
 
@@ -291,8 +298,8 @@ def _pitches(primer, device, p, analytic, eps, pitch, h):
     for i in range(len(primer)):
         c, s = np.cos(primer[i]), abs(np.sin(primer[i]))
         if analytic:
-            along, across, on = analytic_film(p[1], p[2], c, s)
-            f_r, f_t = _film_thrust(p[1], p[2], p[3], along, across)
+            along, across, on = analytic_film(p[B1], p[B2], c, s)
+            f_r, f_t = _film_thrust(p[B1], p[B2], p[B3], along, across)
             h[i] = c * f_r + s * f_t if on else -1.0
         else:
             along, across, h[i], _, _ = steer(device, p, 0, c, s, eps)
@@ -308,11 +315,11 @@ class Pitch:
     on: np.ndarray
     support: np.ndarray
 
-    def __array__(self, dtype=None, copy=None):
+    def __array__(self, dtype: npt.DTypeLike | None = None, copy: bool | None = None) -> np.ndarray:
         return np.array(self.pitch, dtype=dtype)
 
 
-def _evaluate(primer_angle, device, analytic):
+def _evaluate(primer_angle: npt.ArrayLike, device: Film | str, analytic: bool) -> tuple[np.ndarray, np.ndarray]:
     primer = np.asarray(primer_angle, dtype=float)
     kind, parameters = sail(device, 1.0, 1.0)
     flat = np.ascontiguousarray(primer).ravel()
@@ -322,7 +329,7 @@ def _evaluate(primer_angle, device, analytic):
     return pitch, h
 
 
-def optimal_pitch(primer_angle, device: Film | str = "ideal") -> Pitch:
+def optimal_pitch(primer_angle: npt.ArrayLike, device: Film | str = "ideal") -> Pitch:
     """Pitch that makes the most of the thrust along a primer at an angle from the Sun line, rad, same shape.
 
     device : a sail's name or a Film. Ideal and E-sail (final) in closed form; optical films by a cubic and Newton's
@@ -333,7 +340,7 @@ def optimal_pitch(primer_angle, device: Film | str = "ideal") -> Pitch:
     return Pitch(pitch[()], (h > 0)[()], h[()])
 
 
-def analytic_pitch(primer_angle, film: Film | str) -> Pitch:
+def analytic_pitch(primer_angle: npt.ArrayLike, film: Film | str) -> Pitch:
     """Pitch of an optical film in closed form, b3 neglected: within 0.0575 deg (JPL-1978) and 0.0305 deg (JPL-2015)
     of `optimal_pitch` up to its switch. primer_angle rad, any shape; support is the true film's at that pitch.
 

@@ -20,7 +20,9 @@ GOALS = {
     "raan": RAAN,
     "argument": ARGUMENT,
 }
-LYAPUNOV_NUMBERS = 16  # of `lyapunov_primer`: five targets, five weights, five scales, V that is near enough
+# Places in the numbers of `lyapunov_primer`, in the first three groups of one element each: p, f, g, h, k
+TARGETS, WEIGHTS, SCALES, REACHED = 0, 5, 10, 15
+P, F, G, H, K = range(5)
 SMALL = 1e-12  # an eccentricity, or sine of an inclination, below which there is no apsis or node
 
 
@@ -81,6 +83,13 @@ def locally_optimal_primer(kind, x, y, z, vx, vy, vz, mu):
 
 
 @inlined
+def _pull(p, at, element, value):
+    """W (x - T) / S^2 and x - T of an element x."""
+    off, scale = value - p[at + TARGETS + element], p[at + SCALES + element]
+    return p[at + WEIGHTS + element] * off / (scale * scale), off
+
+
+@inlined
 def lyapunov_primer(x, y, z, vx, vy, vz, mu, p, at):
     """-dV/d(velocity) of V = sum W_i ((x_i - T_i) / S_i)^2 over the modified equinoctial elements p, f, g, h, k,
     inertial: the primer that brings the orbit towards the target elements.
@@ -105,14 +114,14 @@ def lyapunov_primer(x, y, z, vx, vy, vz, mu, p, at):
     f, g = ex * fx + ey * fy + ez * fz, ex * gx + ey * gy + ez * gz
     w = 1.0 + f * cos + g * sin
     q = np.sqrt(semi / mu)
-    dp = p[at + 5] * (semi - p[at]) / (p[at + 10] * p[at + 10])
-    df = p[at + 6] * (f - p[at + 1]) / (p[at + 11] * p[at + 11])
-    dg = p[at + 7] * (g - p[at + 2]) / (p[at + 12] * p[at + 12])
-    dh = p[at + 8] * (h - p[at + 3]) / (p[at + 13] * p[at + 13])
-    dk = p[at + 9] * (k - p[at + 4]) / (p[at + 14] * p[at + 14])
-    value = dp * (semi - p[at]) + df * (f - p[at + 1]) + dg * (g - p[at + 2])
-    value += dh * (h - p[at + 3]) + dk * (k - p[at + 4])
-    if value <= p[at + 15]:
+    dp, off_p = _pull(p, at, P, semi)
+    df, off_f = _pull(p, at, F, f)
+    dg, off_g = _pull(p, at, G, g)
+    dh, off_h = _pull(p, at, H, h)
+    dk, off_k = _pull(p, at, K, k)
+    value = dp * off_p + df * off_f + dg * off_g
+    value += dh * off_h + dk * off_k
+    if value <= p[at + REACHED]:
         return 0.0, 0.0, 0.0
     tilt = (h * sin - k * cos) / w
     l_r = q * (df * sin - dg * cos)

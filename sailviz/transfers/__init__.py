@@ -5,6 +5,9 @@ from typing import TYPE_CHECKING
 from sailviz.lazy import lazily
 
 if TYPE_CHECKING:
+    from sailviz.transfers.scene_text import device_words as device_words
+    from sailviz.transfers.scene_text import path_of as path_of
+    from sailviz.transfers.scene_text import scene_of as scene_of
     from sailviz.transfers.search import FlightTimes as FlightTimes
     from sailviz.transfers.search import Place as Place
     from sailviz.transfers.search import Solution as Solution
@@ -12,7 +15,6 @@ if TYPE_CHECKING:
     from sailviz.transfers.search import find as find
     from sailviz.transfers.search import flight_times as flight_times
     from sailviz.transfers.search import place as place
-    from sailviz.transfers.search import scene_of as scene_of
 
 _HOMES = {
     "Place": "search",
@@ -22,6 +24,8 @@ _HOMES = {
     "flight_times": "search",
     "place": "search",
     "circle": "search",
-    "scene_of": "search",
+    "scene_of": "scene_text",
+    "path_of": "scene_text",
+    "device_words": "scene_text",
 }
 __getattr__, __dir__, __all__ = lazily(__name__, _HOMES)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from sailviz.constants import AU, DAY
-from sailviz.design.minimum_time.circles import orbit_to_orbit, rendezvous
+from sailviz.design.minimum_time import orbit_to_orbit, rendezvous
 from sailviz.elements import Elements
 
 # a au, e, i, node, longitude of the perihelion deg: mean elements of J2000

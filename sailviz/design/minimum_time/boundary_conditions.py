@@ -8,20 +8,22 @@ departure. Units: mu = 1, one au or the caller's own unit of length.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from sailviz.compiled import compiled
 from sailviz.design.minimum_time import costates
-from sailviz.design.minimum_time.costates import Sail
+from sailviz.design.minimum_time.state_costate import LRX, LRY, LRZ, LVX, LVY, LVZ, OWN, VX, VY, VZ, Sail, X, Y, Z
 from sailviz.steering.optimal import full_thrust, steer
 
+DIRECTION, SPAN, ANOMALY = slice(0, 3), 3, 4  # places of the unknowns
 SHORTEST = 1e-3  # flight time of a flight whatever its unknowns say
 
 
-def polar(states):
+def polar(states: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
     """(r, angle, u, v): radius, azimuth, radial and transverse speed of planar states (n, >= 6)."""
-    x, y, vx, vy = states[:, 0], states[:, 1], states[:, 3], states[:, 4]
+    x, y, vx, vy = states[:, X], states[:, Y], states[:, VX], states[:, VY]
     r = np.hypot(x, y)
     return r, np.arctan2(y, x), (x * vx + y * vy) / r, (x * vy - y * vx) / r
 
@@ -40,8 +42,25 @@ def _cartesian(r, angle, u, v, lam_r, lam_across, lam_u, lam_v):
 
 
 def _direction(unknowns):
-    size = np.linalg.norm(unknowns[:, :3], axis=1)
-    return unknowns[:, :3] / size[:, None], size
+    """Unit vectors (n, 3) of the costates' direction, and the lengths (n,) that the unknowns give it."""
+    size = np.linalg.norm(unknowns[:, DIRECTION], axis=1)
+    return unknowns[:, DIRECTION] / size[:, None], size
+
+
+class PolarState(NamedTuple):
+    """Where a flight departs in its plane: radius, radial and transverse speed."""
+
+    radius: float
+    radial: float
+    transverse: float
+
+
+class Ellipse(NamedTuple):
+    """An orbit in the plane: semi-latus rectum, eccentricity, argument of periapsis rad."""
+
+    semi_latus_rectum: float
+    eccentricity: float
+    argument: float
 
 
 @dataclass(frozen=True)
@@ -53,24 +72,25 @@ class ToCircle:
     """
 
     sail: Sail
-    start: tuple[float, float, float]  # radius, radial speed, transverse speed
+    start: PolarState
     radius: float  # of the circle
 
     size = 4
+    free_departure = False
 
     @property
-    def target(self):
+    def target(self) -> np.ndarray:
         """Semi-latus rectum, eccentricity vector (x, y)."""
         return np.array([self.radius, 0.0, 0.0])
 
-    def starts(self, unknowns):
+    def starts(self, unknowns: np.ndarray) -> np.ndarray:
         """(n, 12) from (n, 4)."""
         r, u, v = self.start
         lam_r, lam_u, lam_v = _direction(unknowns)[0].T
         # no costate belongs to the angle: lam_angle = r lam_across - lam_u v + lam_v u = 0
         return _cartesian(r, 0.0, u, v, lam_r, (lam_u * v - lam_v * u) / r, lam_u, lam_v)
 
-    def misses(self, unknowns, tolerance, smoothing=0.0):
+    def misses(self, unknowns: np.ndarray, tolerance: float, smoothing: float = 0.0) -> np.ndarray:
         """(n, 4) from (n, 4); NaN where a flight fails."""
         ends = fly(self, unknowns, tolerance, smoothing)
         r, _, u, v = polar(ends)
@@ -88,49 +108,54 @@ class BetweenEllipses:
     """
 
     sail: Sail
-    initial: tuple[float, float, float]  # semi-latus rectum, eccentricity, argument of periapsis rad
-    final: tuple[float, float, float]
+    initial: Ellipse
+    final: Ellipse
 
     size = 5
+    free_departure = True
 
     @property
-    def target(self):
+    def target(self) -> np.ndarray:
+        """Semi-latus rectum, eccentricity vector (x, y)."""
         p, e, argument = self.final
         return np.array([p, e * np.cos(argument), e * np.sin(argument)])
 
-    def starts(self, unknowns):
+    def starts(self, unknowns: np.ndarray) -> np.ndarray:
         """(n, 12) from (n, 5)."""
         p, e, argument = self.initial
-        nu = unknowns[:, 4]
+        nu = unknowns[:, ANOMALY]
         r, u, v = p / (1 + e * np.cos(nu)), e * np.sin(nu) / np.sqrt(p), (1 + e * np.cos(nu)) / np.sqrt(p)
         lam_r, lam_u, lam_v = _direction(unknowns)[0].T
         # a moment more on the initial orbit is worth nothing: lam_r . v - lam_u / r^2 = 0
         return _cartesian(r, nu + argument, u, v, lam_r, (lam_u / r**2 - lam_r * u) / v, lam_u, lam_v)
 
-    def misses(self, unknowns, tolerance, smoothing=0.0):
+    def misses(self, unknowns: np.ndarray, tolerance: float, smoothing: float = 0.0) -> np.ndarray:
         """(n, 5) from (n, 5); NaN where a flight fails."""
         ends = fly(self, unknowns, tolerance, smoothing)
         p, ex, ey = orbits(ends)
-        target = self.target
-        r = np.hypot(ends[:, 0], ends[:, 1])
-        idle = ends[:, 6] * ends[:, 3] + ends[:, 7] * ends[:, 4]
-        idle -= (ends[:, 9] * ends[:, 0] + ends[:, 10] * ends[:, 1]) / r**3
-        size = np.linalg.norm(ends[:, 6:11], axis=1)
-        miss = [p / target[0] - 1, ex - target[1], ey - target[2], idle / size, _direction(unknowns)[1] - 1]
+        p_wanted, ex_wanted, ey_wanted = self.target
+        r = np.hypot(ends[:, X], ends[:, Y])
+        idle = ends[:, LRX] * ends[:, VX] + ends[:, LRY] * ends[:, VY]
+        idle -= (ends[:, LVX] * ends[:, X] + ends[:, LVY] * ends[:, Y]) / r**3
+        size = np.linalg.norm(ends[:, LRX:LVZ], axis=1)
+        miss = [p / p_wanted - 1, ex - ex_wanted, ey - ey_wanted, idle / size, _direction(unknowns)[1] - 1]
         return np.stack(miss, axis=1)
 
 
-def orbits(states):
+def orbits(states: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Semi-latus rectum and eccentricity vector of planar states (n, >= 6), each (n,)."""
-    x, y, vx, vy = states[:, 0], states[:, 1], states[:, 3], states[:, 4]
+    x, y, vx, vy = states[:, X], states[:, Y], states[:, VX], states[:, VY]
     h = x * vy - y * vx
     r = np.hypot(x, y)
     return h * h, vy * h - x / r, -vx * h - y / r
 
 
-def fly(problem, unknowns, tolerance, smoothing=0.0):
+PlanarProblem = ToCircle | BetweenEllipses
+
+
+def fly(problem: PlanarProblem, unknowns: np.ndarray, tolerance: float, smoothing: float = 0.0) -> np.ndarray:
     """Ends (n, 12) of the flights that unknowns (n, k) describe."""
-    spans = np.maximum(unknowns[:, 3], SHORTEST)
+    spans = np.maximum(unknowns[:, SPAN], SHORTEST)
     return costates.fly_all(problem.starts(unknowns), spans, problem.sail, tolerance=tolerance, smoothing=smoothing)
 
 
@@ -140,13 +165,13 @@ def hamiltonians(states, kind, p):
     out = np.empty(len(states))
     for i in range(len(states)):
         y = states[i]
-        r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
-        l2 = y[9] * y[9] + y[10] * y[10] + y[11] * y[11]
+        r2 = y[X] * y[X] + y[Y] * y[Y] + y[Z] * y[Z]
+        l2 = y[LVX] * y[LVX] + y[LVY] * y[LVY] + y[LVZ] * y[LVZ]
         r, size = np.sqrt(r2), np.sqrt(l2)
-        along = (y[0] * y[9] + y[1] * y[10] + y[2] * y[11]) / r
+        along = (y[X] * y[LVX] + y[Y] * y[LVY] + y[Z] * y[LVZ]) / r
         c = along / size
         s = np.sqrt(max(0.0, 1.0 - c * c))
-        h = steer(kind, p, 1, c, s, 0.0)[2]
-        thrust, _ = full_thrust(kind, p, 1, r, 1.0)
-        out[i] = y[6] * y[3] + y[7] * y[4] + y[8] * y[5] - along / r2 + thrust * size * h
+        h = steer(kind, p, OWN, c, s, 0.0)[2]
+        thrust, _ = full_thrust(kind, p, OWN, r, 1.0)
+        out[i] = y[LRX] * y[VX] + y[LRY] * y[VY] + y[LRZ] * y[VZ] - along / r2 + thrust * size * h
     return out

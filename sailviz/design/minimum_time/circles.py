@@ -8,20 +8,34 @@ Pontryagin's principle, checked against Taylor-series integration and direct tra
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
-from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN, RADIUS_SUN
-from sailviz.design.minimum_time import costates as state_costate
-from sailviz.design.minimum_time.boundary_conditions import BetweenEllipses, ToCircle, hamiltonians, polar
-from sailviz.design.minimum_time.costates import Sail, canonical_sail
-from sailviz.design.minimum_time.orbits import orbit_to_orbit  # noqa: F401
-from sailviz.design.minimum_time.planet_rendezvous import rendezvous  # noqa: F401  part of this module's face
+from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, RADIUS_SUN
+from sailviz.design.minimum_time.boundary_conditions import (
+    SPAN,
+    BetweenEllipses,
+    Ellipse,
+    PlanarProblem,
+    PolarState,
+    ToCircle,
+    hamiltonians,
+)
+from sailviz.design.minimum_time.planar_transfer import (
+    Transfer,
+    exponent,
+    fastest_transfer,
+    no_transfer,
+    sail_from,
+    strength,
+    time_unit,
+)
 from sailviz.design.minimum_time.search import Extremal, Search, follow, search, spiral_time
+from sailviz.design.minimum_time.state_costate import OWN, Sail, canonical_sail
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film
-from sailviz.steering.optimal import optimal_pitch
+from sailviz.steering.optimal import STRENGTH
 
 DIRECTIONS = (512, 2048)  # screened at first, and where those lead nowhere
 SPANS = (2.0, 3.0)  # flight times looked at, in estimates of the flight time
@@ -29,117 +43,11 @@ SPANS = (2.0, 3.0)  # flight times looked at, in estimates of the flight time
 Progress = Callable[[float, str], None]
 
 
-@dataclass(frozen=True)
-class Trajectory:
-    """A transfer in time: time (n,) s; position (n, 3) m and velocity (n, 3) m/s, planar, departure on the x axis of a
-    circle; primer (n, 3) unit vectors; pitch (n,) rad in the direction of the primer's side; on (n,)."""
-
-    time: np.ndarray
-    position: np.ndarray
-    velocity: np.ndarray
-    primer: np.ndarray
-    pitch: np.ndarray
-    on: np.ndarray
-
-
-@dataclass(frozen=True)
-class Transfer:
-    """The fastest flight found. NaN, feasible False and a reason where none was.
-
-    time s; revolutions about the Sun; costates (3,) of radius, radial and transverse speed at departure, with
-    mu = r0 = 1 and H = +1; residual: norm of the boundary miss, canonical; hamiltonian_drift: largest |H - 1| on the
-    way; solutions: number of distinct extremals found, solution_times (solutions,) s of each; switches (k,) s where
-    the thrust goes on or off; closest: distance from the Sun m, the smallest on the way; departure_anomaly and
-    arrival_anomaly rad on ellipses; starts: rough flights that were finished, and of them converged.
-    """
-
-    device: Film | str
-    characteristic_acceleration: float
-    initial_radius: float
-    time: float
-    revolutions: float
-    costates: np.ndarray
-    residual: float
-    hamiltonian_drift: float
-    solutions: int
-    solution_times: np.ndarray
-    switches: np.ndarray
-    closest: float
-    starts: int
-    converged: int
-    method: str
-    feasible: bool
-    reason: str = ""
-    departure_anomaly: float = np.nan
-    arrival_anomaly: float = np.nan
-    start: np.ndarray | None = None  # (12,) state and costates, canonical
-
-    @property
-    def claim(self) -> str:
-        """What is known of the flight time, in one sentence."""
-        if not self.feasible:
-            return self.reason
-        others = "the only extremal" if self.solutions == 1 else f"the fastest of {self.solutions} extremals"
-        return (
-            f"Best found: {self.time / DAY:.4f} d, {others} that {self.starts} starts led to "
-            f"({self.converged} converged); that none is faster is likely, not proven."
-        )
-
-    def trajectory(self, samples: int = 1000) -> Trajectory:
-        """The flight at equal steps of time."""
-        if not self.feasible:
-            raise ValueError(f"there is no flight to show: {self.reason}")
-        unit = _time_unit(self.initial_radius)
-        sail = sail_from(self.device, self.characteristic_acceleration, self.initial_radius)
-        span = self.time / unit
-        rows = state_costate.propagate(self.start, span, sail, times=np.linspace(0.0, span, samples)).rows
-        r_hat = rows[:, :3] / np.linalg.norm(rows[:, :3], axis=1)[:, None]
-        primer = rows[:, 9:] / np.linalg.norm(rows[:, 9:], axis=1)[:, None]
-        across = r_hat[:, 0] * primer[:, 1] - r_hat[:, 1] * primer[:, 0]
-        steered = optimal_pitch(np.arctan2(across, np.sum(r_hat * primer, axis=1)), self.device)
-        return Trajectory(
-            np.linspace(0.0, self.time, samples),
-            rows[:, :3] * self.initial_radius,
-            rows[:, 3:6] * self.initial_radius / unit,
-            primer,
-            steered.pitch,
-            steered.on,
-        )
-
-
-def _exponent(device) -> float:
-    """k of the thrust's r^-k."""
-    if not (isinstance(device, str) and device in ELECTRIC_SAILS):
-        return 2.0
-    return 7 / 6 if device == "electric-sail-original" else 1.0  # (3.33)
-
-
-def sail_from(device, characteristic_acceleration, radius) -> Sail:
-    """The Sail in units of mu = 1 and a radius in m; m/s2 at 1 au."""
-    sail = canonical_sail(device, characteristic_acceleration)
-    parameters = sail.parameters.copy()
-    parameters[1] *= (radius / AU) ** (2.0 - _exponent(device))
-    return Sail(sail.kind, parameters)
-
-
-def _strength(sail, device) -> float:
-    """Characteristic acceleration in the sail's own units."""
-    total = 1.0 if _exponent(device) != 2.0 else sum(sail.parameters[2:5])
-    return float(sail.parameters[1] * total)
-
-
-def _check(device, characteristic_acceleration, **positive):
-    for name, value in {"characteristic_acceleration": characteristic_acceleration, **positive}.items():
-        if not (np.isscalar(value) and np.isfinite(value) and value > 0):
-            raise ValueError(f"{name} must be a positive number, got {value!r}")
-    canonical_sail(device, characteristic_acceleration)  # ValueError for what is no sail
-
-
 def circle_to_circle(
-    initial_radius,
-    final_radius,
+    initial_radius: float,
+    final_radius: float,
     device: Film | str,
-    characteristic_acceleration,
+    characteristic_acceleration: float,
     *,
     progress: Progress | None = None,
 ) -> Transfer:
@@ -155,17 +63,17 @@ def circle_to_circle(
     sail = sail_from(device, characteristic_acceleration, initial_radius)
     ratio = final_radius / initial_radius
     if abs(ratio - 1) < 1e-9:
-        return _infeasible(device, characteristic_acceleration, initial_radius, "the two circles are the same")
+        return no_transfer(device, characteristic_acceleration, initial_radius, "the two circles are the same")
     if final_radius < RADIUS_SUN:
-        return _infeasible(device, characteristic_acceleration, initial_radius, "the target lies inside the Sun")
+        return no_transfer(device, characteristic_acceleration, initial_radius, "the target lies inside the Sun")
 
-    flight = ToCircle(sail, (1.0, 0.0, 1.0), ratio)
+    flight = ToCircle(sail, PolarState(1.0, 0.0, 1.0), ratio)
 
-    def accept(unknowns):
-        return hamiltonians(flight.starts(unknowns[None]), sail.kind, sail.parameters)[0] > 0
+    def accept(unknowns: np.ndarray) -> bool:
+        return _is_fastest(flight, unknowns)
 
-    def result(found, method):
-        return _transfer(flight, found, device, characteristic_acceleration, initial_radius, method)
+    def result(found: Search, method: str) -> Transfer:
+        return fastest_transfer(flight, found, device, characteristic_acceleration, initial_radius, method)
 
     guess = _flight_time(device, sail, ratio)
     for n, spans in zip(DIRECTIONS, SPANS, strict=True):
@@ -189,23 +97,23 @@ def circle_to_circle(
             return result(Search((extremal,), easy.starts, easy.converged, miss, path.unknowns), name)
         if abs(np.log(radius_at(path.parameter))) > abs(np.log(reached)):
             reached, nearest = radius_at(path.parameter), path.unknowns
-    reason = f"no transfer was found within {SPANS[-1] * guess * _time_unit(initial_radius) / DAY:.0f} d; "
+    reason = f"no transfer was found within {SPANS[-1] * guess * time_unit(initial_radius) / DAY:.0f} d; "
     if nearest is not None:
-        days = nearest[3] * _time_unit(initial_radius) / DAY
+        days = nearest[SPAN] * time_unit(initial_radius) / DAY
         reason += f"the nearest circle reached has {reached * initial_radius / AU:.6g} au, after {days:.4f} d"
     else:
-        days = found.nearest[3] * _time_unit(initial_radius) / DAY
+        days = found.nearest[SPAN] * time_unit(initial_radius) / DAY
         reason += (
             f"the nearest flight misses the target orbit by {found.nearest_miss:.2g} of its size after {days:.4f} d"
         )
-    return _infeasible(device, characteristic_acceleration, initial_radius, reason)
+    return no_transfer(device, characteristic_acceleration, initial_radius, reason)
 
 
 def planar_orbit_to_orbit(
-    initial_orbit,
-    final_orbit,
+    initial_orbit: tuple[float, float, float],
+    final_orbit: tuple[float, float, float],
     device: Film | str,
-    characteristic_acceleration,
+    characteristic_acceleration: float,
     *,
     directions: int = 2048,
     progress: Progress | None = None,
@@ -223,33 +131,40 @@ def planar_orbit_to_orbit(
     report = progress or (lambda share, words: None)
     sail = sail_from(device, characteristic_acceleration, a)
     ratio = a_f / a
-    flight = BetweenEllipses(sail, (1 - e * e, e, argument), (ratio * (1 - e_f * e_f), e_f, argument_f))
+    flight = BetweenEllipses(sail, Ellipse(1 - e * e, e, argument), Ellipse(ratio * (1 - e_f * e_f), e_f, argument_f))
 
-    def accept(unknowns):
-        return hamiltonians(flight.starts(unknowns[None]), sail.kind, sail.parameters)[0] > 0
+    def accept(unknowns: np.ndarray) -> bool:
+        return _is_fastest(flight, unknowns)
 
     span = SPANS[0] * _flight_time(device, sail, ratio)
     found = search(
         flight, span, directions, ratio > 1, accept, progress=lambda x: report(x, f"{directions} directions")
     )
     if found.extremals:
-        return _transfer(flight, found, device, characteristic_acceleration, a, "screening")
-    days = found.nearest[3] * _time_unit(a) / DAY
+        return fastest_transfer(flight, found, device, characteristic_acceleration, a, "screening")
+    days = found.nearest[SPAN] * time_unit(a) / DAY
     reason = (
-        f"no transfer was found within {span * _time_unit(a) / DAY:.0f} d; the nearest flight misses the target orbit "
+        f"no transfer was found within {span * time_unit(a) / DAY:.0f} d; the nearest flight misses the target orbit "
         f"by {found.nearest_miss:.2g} of its size after {days:.4f} d"
     )
-    return _infeasible(device, characteristic_acceleration, a, reason)
+    return no_transfer(device, characteristic_acceleration, a, reason)
 
 
-def _time_unit(radius) -> float:
-    """s, where mu = 1 and the radius in m is 1."""
-    return float(np.sqrt(radius**3 / MU_SUN))
+def _check(device: Film | str, characteristic_acceleration: float, **positive: float) -> None:
+    for name, value in {"characteristic_acceleration": characteristic_acceleration, **positive}.items():
+        if not (np.isscalar(value) and np.isfinite(value) and value > 0):
+            raise ValueError(f"{name} must be a positive number, got {value!r}")
+    canonical_sail(device, characteristic_acceleration)  # ValueError for what is no sail
 
 
-def _flight_time(device, sail, ratio) -> float:
+def _is_fastest(flight: PlanarProblem, unknowns: np.ndarray) -> bool:
+    """Whether an extremal of unknowns (k,) is a fastest flight rather than a slowest one: H > 0."""
+    return bool(hamiltonians(flight.starts(unknowns[None]), flight.sail.kind, flight.sail.parameters)[0] > 0)
+
+
+def _flight_time(device: Film | str, sail: Sail, ratio: float) -> float:
     """A rough flight time between circles: a slow spiral or, with much thrust, half an ellipse."""
-    spiral = spiral_time(device, _strength(sail, device), _exponent(device), 1.0, ratio)
+    spiral = spiral_time(device, strength(sail, device), exponent(device), 1.0, ratio)
     return float(np.hypot(spiral, np.pi * (0.5 + 0.5 * ratio) ** 1.5))
 
 
@@ -266,7 +181,7 @@ def _detours(flight, device, ratio):
         mixed = Film(
             *(i + s * (f - i) for i, f in zip((ideal.b1, ideal.b2, ideal.b3), (film.b1, film.b2, film.b3), strict=True))
         )
-        ac = _strength(flight.sail, device) * GRAVITY_AT_1_AU
+        ac = strength(flight.sail, device) * GRAVITY_AT_1_AU
         return canonical_sail(mixed, ac).parameters
 
     if not (isinstance(device, str) and device in ELECTRIC_SAILS):
@@ -286,66 +201,7 @@ def _detours(flight, device, ratio):
 
     def stronger(s):
         parameters = flight.sail.parameters.copy()
-        parameters[1] *= 2.0 ** (1.0 - s)
+        parameters[OWN + STRENGTH] *= 2.0 ** (1.0 - s)
         return parameters
 
     yield "continuation in the characteristic acceleration", parameters_at(stronger), lambda s: 1.0, device
-
-
-def _infeasible(device, characteristic_acceleration, radius, reason) -> Transfer:
-    nothing = np.array([])
-    return Transfer(
-        device, characteristic_acceleration, radius, np.nan, np.nan, np.full(3, np.nan), np.nan, np.nan, 0, nothing,
-        nothing, np.nan, 0, 0, "", False, reason,
-    )  # fmt: skip
-
-
-def _transfer(flight, found, device, characteristic_acceleration, radius, method) -> Transfer:
-    """The result in SI of the fastest extremal that keeps out of the Sun."""
-    unit, sail = _time_unit(radius), flight.sail
-    flown = []
-    for extremal in found.extremals:
-        start = flight.starts(extremal.unknowns[None])
-        start[:, 6:] /= hamiltonians(start, sail.kind, sail.parameters)[0]
-        span = extremal.time
-        times = np.linspace(0.0, span, int(40 * span) + 200)
-        path = state_costate.propagate(start[0], span, sail, times=times)
-        r, angle, _, _ = polar(path.rows)
-        if r.min() * radius > RADIUS_SUN:
-            flown.append((extremal, start, path, np.unwrap(angle), r.min()))
-    if not flown:
-        reason = "every extremal found passes through the Sun"
-        return _infeasible(device, characteristic_acceleration, radius, reason)
-    extremal, start, path, angle, closest = flown[0]
-    misses = flight.misses(extremal.unknowns[None], 1e-13)[0, :-1]
-    planar = start[0, [6, 9, 10]]
-    anomalies = ()
-    if isinstance(flight, BetweenEllipses):
-        # radial and transverse components at departure; the angle is that of the x axis
-        r_hat = start[0, :2] / np.hypot(*start[0, :2])
-        turn = np.array([[r_hat[0], r_hat[1]], [-r_hat[1], r_hat[0]]])
-        planar = np.array([(turn @ start[0, 6:8])[0], *(turn @ start[0, 9:11])])
-        departure = extremal.unknowns[4]
-        arrival = departure + angle[-1] - angle[0] + flight.initial[2] - flight.final[2]
-        anomalies = (float(departure % (2 * np.pi)), float(arrival % (2 * np.pi)))
-    return Transfer(
-        device,
-        float(characteristic_acceleration),
-        float(radius),
-        extremal.time * unit,
-        float(angle[-1] - angle[0]) / (2 * np.pi),
-        planar,
-        float(np.linalg.norm(misses)),
-        path.drift,
-        len(flown),
-        np.array([f[0].time * unit for f in flown]),
-        path.switches * unit,
-        float(closest * radius),
-        found.starts,
-        found.converged,
-        method,
-        True,
-        "",
-        *(anomalies or (np.nan, np.nan)),
-        start[0],
-    )

@@ -1,119 +1,35 @@
-"""State and costates of a minimum-time flight, propagated together: twelve numbers, one right-hand side for all sails.
+"""State and costates of a minimum-time flight flown together, one right-hand side for all sails.
 
-Units: mu = 1, one au = 1. The Hamiltonian H = lam_r . v + lam_v . (a - r / r^3) is maximised and constant along the
-flight. With h(c) the support function of the thrust, c and s cosine and sine of the angle between the primer lam_v and
-r_hat, and q = a_c r^-k |lam_v|, the envelope theorem gives the adjoint without a derivative of the steering law:
-
-    d(q h)/dr = -k q h / r r_hat - q (c f_t - s f_r) / r t_hat.
-
-Re-derived, checked against differences of H. Integrator: Dormand-Prince 8(5,3), see `propagate.dop853`; here with the
-stages in a loop, which compiles in seconds. Where a sail switches on or off the right-hand side jumps: steps land
-there, found to rounding.
+Units: mu = 1, one au = 1; equations in `state_costate`. Integrator: Dormand-Prince 8(5,3), see `propagate.dop853`; here
+with the stages in a loop, which compiles in seconds. Where a sail switches on or off the right-hand side jumps: steps
+land there, found to rounding.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.compiled import called, compiled
-from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
-from sailviz.propagate import dop853_coefficients as _c
-from sailviz.propulsion.devices import ELECTRIC_SAIL, sail
-from sailviz.steering.optimal import full_thrust, optimal_pitch, steer
+from sailviz.design.minimum_time.state_costate import LRX, LVX, SIZE, VX, Sail, right_hand_side, scales
+from sailviz.propagate import dop853_coefficients
 
-SIZE = 12  # r (3), v (3), lam_r (3), lam_v (3)
-TIME_UNIT = np.sqrt(AU**3 / MU_SUN)  # s, 58.13 d
-SPEED_UNIT = AU / TIME_UNIT  # m/s, 29.78 km/s
 DONE, UNDERFLOW, TOO_MANY_STEPS = range(3)
 REASONS = ("", "the steps became too small", "it took too many steps")
 MOST_STEPS = 20_000
 MOST_SWITCHES = 1024
 SAFETY, SHRINK_MOST, GROW_MOST = 0.9, 0.333, 6.0  # Hairer's values
-NEVER = -2.0  # a cosine beyond reach
 
 
-class Sail(NamedTuple):
-    """A sail as the propagator reads it: kind, and parameters: the cosine of the primer angle at which it switches
-    off, then the numbers of `devices.sail` in units of one au and the Sun's pull there."""
-
-    kind: int
-    parameters: np.ndarray
-
-    @property
-    def switches(self) -> bool:
-        return bool(self.parameters[0] > NEVER)
-
-    @property
-    def rounds_off(self) -> bool:
-        """Whether smoothing makes sense: an E-sail's thrust set, continued, does not have a film's edge-on corner."""
-        return self.kind == ELECTRIC_SAIL
-
-
-def canonical_sail(device, characteristic_acceleration) -> Sail:
-    """The Sail of a device (name or Film) and its characteristic acceleration in m/s2."""
-    kind, numbers = sail(device, characteristic_acceleration / GRAVITY_AT_1_AU, 1.0)
-    low, high = 0.5 * np.pi, np.pi  # on at a transverse primer, every one of them
-    off = NEVER
-    if not optimal_pitch(np.pi * (1.0 - 1e-9), device).on:
-        while high - low > 2e-16 * np.pi:
-            middle = 0.5 * (low + high)
-            if middle in (low, high):
-                break
-            low, high = (middle, high) if optimal_pitch(middle, device).on else (low, middle)
-        off = np.cos(low)
-    return Sail(kind, np.array([off, *numbers]))
-
-
-def _row(prefix, first, width):
-    return np.array([getattr(_c, f"{prefix}_{j}", 0.0) for j in range(first, first + width)])
+def _row(prefix: str, first: int, width: int) -> np.ndarray:
+    return np.array([getattr(dop853_coefficients, f"{prefix}_{j}", 0.0) for j in range(first, first + width)])
 
 
 _A = np.array([_row(f"A{i}", 1, 16) for i in range(1, 17)])
 _E5, _E3 = _row("E5", 1, 12), _row("E3", 1, 12)
 _D = np.array([_row(f"D{i}", 1, 16) for i in range(4, 8)])
-
-
-@called
-def right_hand_side(y, kind, p, eps, out):
-    """out (12,) = dy/dt of state and costates y (12,). Returns (switching function, H).
-
-    kind, p : of a Sail. The switching function is positive where the sail thrusts; eps rounds the switch off.
-    """
-    x, yy, z = y[0], y[1], y[2]
-    lx, ly, lz = y[9], y[10], y[11]
-    r = np.sqrt(x * x + yy * yy + z * z)
-    inverse = 1.0 / r
-    inverse3 = inverse * inverse * inverse
-    ux, uy, uz = x * inverse, yy * inverse, z * inverse
-    size = np.sqrt(lx * lx + ly * ly + lz * lz)
-    along = lx * ux + ly * uy + lz * uz
-    wx, wy, wz = lx - along * ux, ly - along * uy, lz - along * uz
-    across = np.sqrt(wx * wx + wy * wy + wz * wz)
-    c, s = 1.0, 0.0  # of a primer that vanishes: any
-    if size > 0.0:
-        c, s = along / size, across / size
-    tx = ty = tz = 0.0
-    if across > 0.0:
-        tx, ty, tz = wx / across, wy / across, wz / across
-    _, _, h, fr, ft = steer(kind, p, 1, c, s, eps)
-    strength, exponent = full_thrust(kind, p, 1, r, 1.0)
-    ar, at = strength * fr, strength * ft
-    out[0], out[1], out[2] = y[3], y[4], y[5]
-    out[3] = ar * ux + at * tx - x * inverse3
-    out[4] = ar * uy + at * ty - yy * inverse3
-    out[5] = ar * uz + at * tz - z * inverse3
-    q = strength * size * inverse
-    radial = exponent * q * h - 3.0 * along * inverse3
-    sideways = q * (c * ft - s * fr)
-    out[6] = lx * inverse3 + radial * ux + sideways * tx
-    out[7] = ly * inverse3 + radial * uy + sideways * ty
-    out[8] = lz * inverse3 + radial * uz + sideways * tz
-    out[9], out[10], out[11] = -y[6], -y[7], -y[8]
-    hamiltonian = y[6] * y[3] + y[7] * y[4] + y[8] * y[5] + lx * out[3] + ly * out[4] + lz * out[5]
-    return c - p[0], hamiltonian
 
 
 @called
@@ -134,12 +50,12 @@ def _step(y, kind, p, eps, h, k, w, new):
     for j in range(SIZE):
         new[j] = w[j]
     # positions and costates each against what they are measured with on the orbit at hand
-    r, v, lr, lv = _sizes(y)
-    r1, v1, lr1, lv1 = _sizes(new)
+    r, v, lr, lv = scales(y)
+    r1, v1, lr1, lv1 = scales(new)
     r, v, lr, lv = max(r, r1), max(v, v1), max(lr, lr1), max(lv, lv1)
     e5 = e3 = 0.0
     for j in range(SIZE):
-        scale = r if j < 3 else v if j < 6 else lr if j < 9 else lv
+        scale = r if j < VX else v if j < LRX else lr if j < LVX else lv
         p5 = p3 = 0.0
         for stage in range(12):
             p5 += _E5[stage] * k[stage, j]
@@ -149,16 +65,6 @@ def _step(y, kind, p, eps, h, k, w, new):
     if e5 == 0.0 and e3 == 0.0:
         return 0.0, support
     return abs(h) * e5 / np.sqrt((e5 + 0.01 * e3) * SIZE), support
-
-
-@called
-def _sizes(y):
-    r = np.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
-    v = np.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5])
-    lr = np.sqrt(y[6] * y[6] + y[7] * y[7] + y[8] * y[8])
-    lv = np.sqrt(y[9] * y[9] + y[10] * y[10] + y[11] * y[11])
-    pace = r * np.sqrt(r)
-    return r, max(v, 1.0 / np.sqrt(r)), max(lr, lv / pace), max(lv, lr * pace)
 
 
 @called
@@ -197,6 +103,30 @@ def _interpolant(y, kind, p, eps, h, k, w, new, m):
         m[7, j] = -f6
 
 
+@called
+def _up_to_switch(y, kind, p, eps, h, k, w, new, before, after, span):
+    """The step cut to land just behind the switch, so that it and the one after it are smooth: `_step` again with
+    (error, switching function at its end, its length), from the switching function before and after the whole step."""
+    low, high, g_low, g_high, side = 0.0, h, before, after, 0
+    for _ in range(100):
+        if high - low <= 1e-15 * span:
+            break
+        middle = low + (high - low) * g_low / (g_low - g_high)  # false position (Illinois)
+        edge = 1e-3 * (high - low)
+        middle = min(max(middle, low + edge), high - edge)
+        _, g = _step(y, kind, p, eps, middle, k, w, new)
+        if (g > 0.0) == (before > 0.0):
+            low, g_low = middle, g
+            g_high = 0.5 * g_high if side == 1 else g_high
+            side = 1
+        else:
+            high, g_high = middle, g
+            g_low = 0.5 * g_low if side == -1 else g_low
+            side = -1
+    error, after = _step(y, kind, p, eps, high, k, w, new)
+    return error, after, high
+
+
 @compiled
 def propagate_compiled(start, span, kind, p, eps, tolerance, t_out, out, switches, end):
     """`propagate` without its arrays made: out (n, 12), switches (MOST_SWITCHES,), end (12,) are filled.
@@ -210,7 +140,7 @@ def propagate_compiled(start, span, kind, p, eps, tolerance, t_out, out, switche
     while row < len(t_out) and t_out[row] <= 0.0:
         out[row, :] = start
         row += 1
-    r, v, _, _ = _sizes(y)
+    r, v, _, _ = scales(y)
     wish = min(3.0 * tolerance**0.125 * r / v, span)
     status = DONE
     rejected = False
@@ -227,24 +157,7 @@ def propagate_compiled(start, span, kind, p, eps, tolerance, t_out, out, switche
         error, after = _step(y, kind, p, eps, h, k, w, new)
         switching = eps == 0.0 and (after > 0.0) != (support > 0.0)
         if switching:
-            # land just behind the switch: the step up to it is smooth, the one after it as well
-            low, high, g_low, g_high, side = 0.0, h, support, after, 0
-            for _ in range(100):
-                if high - low <= 1e-15 * span:
-                    break
-                middle = low + (high - low) * g_low / (g_low - g_high)
-                edge = 1e-3 * (high - low)
-                middle = min(max(middle, low + edge), high - edge)
-                error, g = _step(y, kind, p, eps, middle, k, w, new)
-                if (g > 0.0) == (support > 0.0):
-                    low, g_low = middle, g
-                    g_high = 0.5 * g_high if side == 1 else g_high
-                    side = 1
-                else:
-                    high, g_high = middle, g
-                    g_low = 0.5 * g_low if side == -1 else g_low
-                    side = -1
-            error, after = _step(y, kind, p, eps, high, k, w, new)
+            error, after, high = _up_to_switch(y, kind, p, eps, h, k, w, new, support, after, span)
             landing, h = landing and high == h, high
         error /= tolerance
         if not error < 1.0:
@@ -297,8 +210,7 @@ def propagate_batch(starts, spans, kind, p, eps, tolerance, ends, status):
 class Flight:
     """One flight in units of mu = 1 and one au: end (12,) state and costates at time; rows (n, 12) at the times asked
     for; switches (k,) times at which the sail switched on or off; hamiltonian H at the start and drift, the largest
-    |H - H(0)|; steps taken. reason says
-    why a flight ended early."""
+    |H - H(0)|; steps taken. reason says why a flight ended early."""
 
     time: float
     end: np.ndarray
@@ -310,7 +222,15 @@ class Flight:
     reason: str = ""
 
 
-def propagate(start, span, sail: Sail, *, times=(), tolerance=1e-13, smoothing=0.0) -> Flight:
+def propagate(
+    start: npt.ArrayLike,
+    span: float,
+    sail: Sail,
+    *,
+    times: npt.ArrayLike = (),
+    tolerance: float = 1e-13,
+    smoothing: float = 0.0,
+) -> Flight:
     """Fly state and costates start (12,) - r, v, lam_r, lam_v - for a span >= 0, the sail steered optimally.
 
     Units mu = 1 and one au. times (n,) : increasing, for dense output of seventh order, an error of a few tolerances.
@@ -330,7 +250,9 @@ def propagate(start, span, sail: Sail, *, times=(), tolerance=1e-13, smoothing=0
     )
 
 
-def fly_all(starts, spans, sail: Sail, *, tolerance=1e-13, smoothing=0.0):
+def fly_all(
+    starts: npt.ArrayLike, spans: npt.ArrayLike, sail: Sail, *, tolerance: float = 1e-13, smoothing: float = 0.0
+) -> np.ndarray:
     """Ends (n, 12) of n flights from starts (n, 12) over spans (n,); NaN where one fails. Units as in `propagate`."""
     starts, spans = np.ascontiguousarray(starts, dtype=float), np.ascontiguousarray(spans, dtype=float)
     ends, status = np.empty_like(starts), np.empty(len(spans), dtype=np.int64)

@@ -9,13 +9,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz import frames
 from sailviz.constants import AU
-from sailviz.design.minimum_time import costates
-from sailviz.design.minimum_time.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
+from sailviz.design.minimum_time.costates import Flight, propagate
+from sailviz.design.minimum_time.state_costate import (
+    LAM_R,
+    LAM_V,
+    POSITION,
+    SPEED_UNIT,
+    TIME_UNIT,
+    VELOCITY,
+    canonical_sail,
+)
+from sailviz.propulsion.solar_sail import Film
 from sailviz.steering.optimal import optimal_pitch
 
 FEWEST, MOST = 200, 200_000  # rows of a grid that is halved until it is fine enough
@@ -31,15 +42,34 @@ class Solved:
     velocity: np.ndarray
     costates: np.ndarray
     time: float
-    device: object
+    device: Film | str
     characteristic_acceleration: float
 
 
-def from_planar(start, radius, time, device, characteristic_acceleration) -> Solved:
+class Replayable(Protocol):
+    """What `Solved`, `OrbitTransfer` and `Rendezvous` have in common."""
+
+    @property
+    def position(self) -> np.ndarray: ...
+    @property
+    def velocity(self) -> np.ndarray: ...
+    @property
+    def costates(self) -> np.ndarray: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def device(self) -> Film | str: ...
+    @property
+    def characteristic_acceleration(self) -> float: ...
+
+
+def from_planar(
+    start: npt.ArrayLike, radius: float, time: float, device: Film | str, characteristic_acceleration: float
+) -> Solved:
     """A Solved from state and costates (12,) in units of mu = 1 and a radius in m, as of circle-to-circle flights."""
     a, start = radius / AU, np.asarray(start, dtype=float)
-    position, velocity = start[:3] * radius, start[3:6] * SPEED_UNIT / np.sqrt(a)
-    lam = np.concatenate([start[6:9] * np.sqrt(a), start[9:] * a**2])  # -d time / d (position, velocity)
+    position, velocity = start[POSITION] * radius, start[VELOCITY] * SPEED_UNIT / np.sqrt(a)
+    lam = np.concatenate([start[LAM_R] * np.sqrt(a), start[LAM_V] * a**2])  # -d time / d (position, velocity)
     return Solved(position, velocity, lam, float(time), device, float(characteristic_acceleration))
 
 
@@ -74,18 +104,18 @@ class SteeringTable:
     switches: np.ndarray
 
 
-def _fly(solved, times=()):
+def _fly(solved: Replayable, times: npt.ArrayLike = ()) -> Flight:
     """The flight, with rows at times in s."""
     y = np.concatenate([np.divide(solved.position, AU), np.divide(solved.velocity, SPEED_UNIT), solved.costates])
     sail = canonical_sail(solved.device, solved.characteristic_acceleration)
     span = solved.time / TIME_UNIT
-    flight = costates.propagate(y, span, sail, times=np.minimum(np.divide(times, TIME_UNIT), span))
+    flight = propagate(y, span, sail, times=np.minimum(np.divide(times, TIME_UNIT), span))
     if flight.reason:
         raise ValueError(f"these costates cannot be flown: {flight.reason} after {flight.time * TIME_UNIT:.6g} s")
     return flight
 
 
-def primer_history(solved, *, error=1e-10) -> PrimerHistory:
+def primer_history(solved: Replayable, *, error: float = 1e-10) -> PrimerHistory:
     """The primer of a solved flight on an even grid, dense enough for Hermite's cubic to keep an error in rad.
 
     solved : an OrbitTransfer, a Rendezvous or a Solved.
@@ -94,7 +124,7 @@ def primer_history(solved, *, error=1e-10) -> PrimerHistory:
     while True:
         time = np.linspace(0.0, solved.time, 2 * intervals + 1)
         flight = _fly(solved, time)
-        primer, rate = flight.rows[:, 9:], -flight.rows[:, 6:9]
+        primer, rate = flight.rows[:, LAM_V], -flight.rows[:, LAM_R]
         left, right = slice(0, -1, 2), slice(2, None, 2)
         half = (time[2] - time[0]) / TIME_UNIT / 8
         middle = 0.5 * (primer[left] + primer[right]) + half * (rate[left] - rate[right])
@@ -114,7 +144,7 @@ def primer_history(solved, *, error=1e-10) -> PrimerHistory:
     )
 
 
-def steering_table(solved, *, error=1e-6) -> SteeringTable:
+def steering_table(solved: Replayable, *, error: float = 1e-6) -> SteeringTable:
     """Attitudes of a solved flight, dense enough for linear reading to keep an error in rad, split at the switches.
 
     solved : an OrbitTransfer, a Rendezvous or a Solved. Where the thrust is off a film stands edge-on and an E-sail
@@ -149,7 +179,7 @@ def steering_table(solved, *, error=1e-6) -> SteeringTable:
 def _attitude(solved, time, before):
     """Pitch and clock rad, and 1 or 0 for thrust, each (n,), continuous from a pair of pitch and clock before."""
     rows = _fly(solved, time).rows
-    primer = frames.to_frame(frames.rtn(rows[:, :3], rows[:, 3:6]), rows[:, 9:])
+    primer = frames.to_frame(frames.rtn(rows[:, POSITION], rows[:, VELOCITY]), rows[:, LAM_V])
     across = np.hypot(primer[:, 1], primer[:, 2])
     steered = optimal_pitch(np.arctan2(across, primer[:, 0]), solved.device)
     side = primer[:, 1:] / np.maximum(across, np.finfo(float).tiny)[:, None]

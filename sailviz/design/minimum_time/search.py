@@ -18,7 +18,9 @@ import numpy as np
 
 from sailviz.compiled import compiled
 from sailviz.design.minimum_time import shooting
-from sailviz.design.minimum_time.costates import SIZE, propagate_compiled
+from sailviz.design.minimum_time.boundary_conditions import ANOMALY, DIRECTION, SPAN
+from sailviz.design.minimum_time.costates import propagate_compiled
+from sailviz.design.minimum_time.state_costate import SIZE, VX, VY, X, Y
 from sailviz.steering.optimal import optimal_pitch
 
 LOOSE, TIGHT = 1e-9, 1e-13  # integration tolerances
@@ -40,7 +42,7 @@ class Extremal:
 
     @property
     def time(self) -> float:
-        return float(self.unknowns[3])
+        return float(self.unknowns[SPAN])
 
 
 @dataclass(frozen=True)
@@ -67,22 +69,23 @@ def screen(starts, span, samples, kind, p, eps, tolerance, target, miss, when):
     stretch = span / pieces
     times, rows = np.linspace(0.0, stretch, each + 1), np.empty((each + 1, SIZE))
     switches, y, end = np.empty(0), np.empty(SIZE), np.empty(SIZE)
+    p_wanted, ex_wanted, ey_wanted = target[0], target[1], target[2]
     for i in range(len(starts)):
         best, at = np.inf, span
         y[:] = starts[i]
         for piece in range(pieces):
-            rows[:, 0] = np.nan
-            steps = propagate_compiled(y, stretch, kind, p, eps, tolerance, times, rows, switches, end)[2]
+            rows[:, X] = np.nan
+            _, _, steps, _, _, _ = propagate_compiled(y, stretch, kind, p, eps, tolerance, times, rows, switches, end)
             for k in range(1, each + 1):
-                px, py, vx, vy = rows[k, 0], rows[k, 1], rows[k, 3], rows[k, 4]
+                px, py, vx, vy = rows[k, X], rows[k, Y], rows[k, VX], rows[k, VY]
                 r = np.sqrt(px * px + py * py)
                 h = px * vy - py * vx
-                ex, ey = vy * h - px / r - target[1], -vx * h - py / r - target[2]
-                size = h * h / target[0] - 1.0
+                ex, ey = vy * h - px / r - ex_wanted, -vx * h - py / r - ey_wanted
+                size = h * h / p_wanted - 1.0
                 m = size * size + ex * ex + ey * ey
                 if m < best:
                     best, at = m, piece * stretch + times[k]
-            near = end[0] * end[0] + end[1] * end[1]
+            near = end[X] * end[X] + end[Y] * end[Y]
             if steps > MOST_STEPS_OF_A_PIECE or not (near > DIVE * DIVE):
                 break
             y[:] = end
@@ -114,9 +117,9 @@ def spread(problem, n, outwards):
     q = sequence(n, problem.size - 2)
     axis = (1 if outwards else -1) * np.array([1.0, 0.0, 1.0]) / np.sqrt(2)
     unknowns = np.zeros((n, problem.size))
-    unknowns[:, :3] = _turned(axis, np.pi * q[:, 0] ** 1.5, 2 * np.pi * q[:, 1])
-    if problem.size == 5:
-        unknowns[:, 4] = 2 * np.pi * q[:, 2]
+    unknowns[:, DIRECTION] = _turned(axis, np.pi * q[:, 0] ** 1.5, 2 * np.pi * q[:, 1])
+    if problem.free_departure:
+        unknowns[:, ANOMALY] = 2 * np.pi * q[:, 2]
     return unknowns
 
 
@@ -134,7 +137,8 @@ def in_threads(function, items, progress=None):
 def _screened(problem, unknowns, span, smoothing, progress=None):
     """(miss (n,), unknowns with their times) of the flights that unknowns (n, k) begin."""
     starts = problem.starts(unknowns)
-    pace = 0.2 * min(1.0, problem.target[0]) ** 0.75
+    semi_latus_rectum, *_ = problem.target
+    pace = 0.2 * min(1.0, semi_latus_rectum) ** 0.75
     samples = int(span / pace) + 2
     sail, target = problem.sail, problem.target
 
@@ -146,7 +150,7 @@ def _screened(problem, unknowns, span, smoothing, progress=None):
     found = in_threads(part, np.array_split(np.arange(len(unknowns)), 16), progress)
     miss, when = (np.concatenate(column) for column in zip(*found, strict=True))
     unknowns = unknowns.copy()
-    unknowns[:, 3] = when
+    unknowns[:, SPAN] = when
     return np.where(np.isfinite(miss), miss, np.inf), unknowns
 
 
@@ -158,16 +162,16 @@ def _candidates(problem, n, span, smoothing, outwards, progress):
         best = unknowns[np.argsort(miss, kind="stable")[:KEPT]]
         children = np.repeat(best, CHILDREN, axis=0)
         angle, around = np.tile(width * np.sqrt(q[:, 0]), len(best)), np.tile(2 * np.pi * q[:, 1], len(best))
-        children[:, :3] = _turned(children[:, :3], angle, around)
-        if problem.size == 5:
-            children[:, 4] += np.tile(width * (2 * sequence(CHILDREN, 3)[:, 2] - 1), len(best))
+        children[:, DIRECTION] = _turned(children[:, DIRECTION], angle, around)
+        if problem.free_departure:
+            children[:, ANOMALY] += np.tile(width * (2 * sequence(CHILDREN, 3)[:, 2] - 1), len(best))
         more, children = _screened(problem, children, span, smoothing)
         miss, unknowns = np.concatenate([miss, more]), np.concatenate([unknowns, children])
         width *= 0.5
     chosen = []
     for i in np.argsort(miss, kind="stable"):
         apart = [np.abs(unknowns[i] - unknowns[j]) for j in chosen]
-        if all(np.linalg.norm(a[:3]) > 0.03 or a[3] > 0.5 or np.any(a[4:] > 0.1) for a in apart):
+        if all(np.linalg.norm(a[DIRECTION]) > 0.03 or a[SPAN] > 0.5 or np.any(a[ANOMALY:] > 0.1) for a in apart):
             chosen.append(i)
             if len(chosen) == KEPT or not np.isfinite(miss[i]):
                 break
@@ -175,7 +179,7 @@ def _candidates(problem, n, span, smoothing, outwards, progress):
 
 
 def _solve(problem, unknowns, smoothing):
-    limit = np.array([0.2, 0.2, 0.2, 0.1 * max(unknowns[3], 0.1), 0.3])[: problem.size]
+    limit = np.array([0.2, 0.2, 0.2, 0.1 * max(unknowns[SPAN], 0.1), 0.3])[: problem.size]
     return shooting.solve(
         lambda x: problem.misses(x, LOOSE, smoothing), unknowns, step=1e-6, goal=1e-7, most=30, limit=limit
     )
@@ -189,7 +193,7 @@ def finish(problem, unknowns, smoothing=0.0) -> Extremal | None:
             return None
         unknowns = found.unknowns
     found = shooting.solve(lambda x: problem.misses(x, TIGHT), unknowns, step=1e-7, goal=1e-13, most=15)
-    if not (found.residual < GOAL and found.unknowns[3] > 0):
+    if not (found.residual < GOAL and found.unknowns[SPAN] > 0):
         return None
     return Extremal(found.unknowns, found.residual)
 
@@ -198,8 +202,8 @@ def distinct(extremals) -> tuple[Extremal, ...]:
     """Without repetitions, fastest first; two are one when times and costates agree to 1e-6."""
     kept: list[Extremal] = []
     for extremal in sorted(extremals, key=lambda e: e.time):
-        apart = [np.abs(extremal.unknowns[:4] - other.unknowns[:4]) for other in kept]
-        if all(np.max(a[:3]) > 1e-5 or a[3] > 1e-6 * extremal.time for a in apart):
+        apart = [np.abs(extremal.unknowns[:ANOMALY] - other.unknowns[:ANOMALY]) for other in kept]
+        if all(np.max(a[DIRECTION]) > 1e-5 or a[SPAN] > 1e-6 * extremal.time for a in apart):
             kept.append(extremal)
     return tuple(kept)
 
@@ -250,7 +254,7 @@ def follow(problem_at, unknowns, steps=500, progress=None) -> Path:
         unknowns = _solve(problem_at(0.0), unknowns, rounding).unknowns
     k = len(unknowns)
     scale = np.ones(k)
-    scale[3] = 1.0 / unknowns[3]
+    scale[SPAN] = 1.0 / unknowns[SPAN]
 
     def misses(z):
         return problem_at(z[k]).misses((z[:k] / scale)[None], LOOSE, eps)[0]

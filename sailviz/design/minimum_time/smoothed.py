@@ -13,8 +13,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.compiled import compiled, inlined
+
+R, THETA, U, V, LAM_R, LAM_U, LAM_V = range(7)  # what stands where in a state: r, angle, speeds and their costates
+SIZE = 7
 
 
 @dataclass(frozen=True)
@@ -48,28 +52,35 @@ def _rates(r, u, v, p, q, s, radial, transverse):
 
 @compiled
 def _shoot(y, time, steps, a_c, width, pitch, throttle):
-    """Advance y (7,) = r, theta, u, v and costates by classical Runge-Kutta steps, filling pitch and throttle."""
+    """Advance y (7,), laid out as above, by classical Runge-Kutta steps, filling pitch and throttle (steps,)."""
     h = time / steps
     for n in range(steps):
-        size = np.sqrt(y[5] * y[5] + y[6] * y[6])
-        alpha = 0.5 * np.arctan2(y[6], y[5])
-        switch = (3.0 * y[5] + size) / size
+        r0, u0, v0, p, q, s = y[R], y[U], y[V], y[LAM_R], y[LAM_U], y[LAM_V]
+        size = np.sqrt(q * q + s * s)
+        alpha = 0.5 * np.arctan2(s, q)
+        switch = (3.0 * q + size) / size
         tau = 0.5 * (1.0 + np.tanh(switch / width))
         pitch[n], throttle[n] = alpha, tau
         f, g = 0.25 * a_c * tau * (3.0 + np.cos(2.0 * alpha)), 0.25 * a_c * tau * np.sin(2.0 * alpha)
-        k = _rates(y[0], y[2], y[3], y[4], y[5], y[6], f, g)
-        z = (y[0], y[1], y[2], y[3], y[4], y[5], y[6])
-        for j in range(7):
-            y[j] = z[j] + h / 6.0 * k[j]
+        k = _rates(r0, u0, v0, p, q, s, f, g)
+        for j in range(SIZE):
+            y[j] += h / 6.0 * k[j]
         for weight, part in ((2.0, 0.5), (2.0, 0.5), (1.0, 1.0)):
             x = part * h
-            r, u, v = z[0] + x * k[0], z[2] + x * k[2], z[3] + x * k[3]
-            k = _rates(r, u, v, z[4] + x * k[4], z[5] + x * k[5], z[6] + x * k[6], f, g)
-            for j in range(7):
+            r, u, v = r0 + x * k[R], u0 + x * k[U], v0 + x * k[V]
+            k = _rates(r, u, v, p + x * k[LAM_R], q + x * k[LAM_U], s + x * k[LAM_V], f, g)
+            for j in range(SIZE):
                 y[j] += h / 6.0 * weight * k[j]
 
 
-def smoothed_transfer(radius, characteristic_acceleration, costates, time, step, width=0.05) -> SmoothedTransfer:
+def smoothed_transfer(
+    radius: float,
+    characteristic_acceleration: float,
+    costates: npt.ArrayLike,
+    time: float,
+    step: float,
+    width: float = 0.05,
+) -> SmoothedTransfer:
     """Transfer from the circle of radius 1 to another by shooting on the direction of the costates and the time.
 
     characteristic_acceleration at r = 1; costates (3,) of r, u, v at the start and time: where to begin; step : longest
@@ -78,23 +89,28 @@ def smoothed_transfer(radius, characteristic_acceleration, costates, time, step,
     """
     from scipy.optimize import root
 
-    def direction(x):
-        return np.array([np.sin(x[1]), np.cos(x[1]) * np.cos(x[0]), np.cos(x[1]) * np.sin(x[0])])
+    def direction(sideways, upwards):
+        """Costates (3,) of r, u, v, of length 1, from two angles."""
+        level = np.cos(upwards)
+        return np.array([np.sin(upwards), level * np.cos(sideways), level * np.sin(sideways)])
 
-    def fly(x, steps):
-        y = np.concatenate([[1.0, 0.0, 0.0, 1.0], direction(x)])
+    def fly(unknowns, steps):
+        sideways, upwards, duration = unknowns
+        y = np.concatenate([[1.0, 0.0, 0.0, 1.0], direction(sideways, upwards)])
         pitch, throttle = np.empty(steps), np.empty(steps)
-        _shoot(y, x[2], steps, characteristic_acceleration, width, pitch, throttle)
+        _shoot(y, duration, steps, characteristic_acceleration, width, pitch, throttle)
         return y, pitch, throttle
 
-    def miss(x, steps):
-        y = fly(x, steps)[0]
-        return [y[0] - radius, y[2], y[3] - radius**-0.5]
+    def miss(unknowns, steps):
+        y, _, _ = fly(unknowns, steps)
+        return [y[R] - radius, y[U], y[V] - radius**-0.5]
 
-    p, q, s = costates
-    x = np.array([np.arctan2(s, q), np.arctan2(p, np.hypot(q, s)), time])
+    p, q, s = np.asarray(costates, dtype=float)
+    sideways, upwards, duration = np.arctan2(s, q), np.arctan2(p, np.hypot(q, s)), time
     for _ in range(2):  # the number of steps follows the time found
-        steps = max(1, int(np.ceil(x[2] / step)))
-        x = root(miss, x, args=(steps,), tol=1e-13).x
-    y, pitch, throttle = fly(x, steps)
-    return SmoothedTransfer(x[2], y[1], pitch, throttle, direction(x), float(np.abs(miss(x, steps)).max()))
+        steps = max(1, int(np.ceil(duration / step)))
+        unknowns = root(miss, [sideways, upwards, duration], args=(steps,), tol=1e-13).x
+        sideways, upwards, duration = unknowns
+    y, pitch, throttle = fly(unknowns, steps)
+    residual = float(np.abs(miss(unknowns, steps)).max())
+    return SmoothedTransfer(duration, y[THETA], pitch, throttle, direction(sideways, upwards), residual)

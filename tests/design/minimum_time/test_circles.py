@@ -12,9 +12,9 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 from sailviz.constants import AU, DAY, MU_SUN
+from sailviz.design.minimum_time import circle_to_circle, planar_orbit_to_orbit, sail_from
 from sailviz.design.minimum_time import circles as minimum_time
 from sailviz.design.minimum_time.boundary_conditions import ToCircle
-from sailviz.design.minimum_time.circles import circle_to_circle, planar_orbit_to_orbit, sail_from
 from sailviz.design.minimum_time.search import distinct, finish, follow, search
 from sailviz.propulsion import solar_sail
 from sailviz.propulsion.solar_sail import Film

@@ -10,8 +10,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from sailviz.constants import DAY
-from sailviz.design.minimum_time import costates
-from sailviz.design.minimum_time.costates import TIME_UNIT, canonical_sail
+from sailviz.design.minimum_time import costates, state_costate
+from sailviz.design.minimum_time.state_costate import TIME_UNIT, canonical_sail
 
 SAILS = ("ideal", "jpl-1978", "jpl-2015", "eta-perfect", "electric-sail")
 SAILS += ("electric-sail-original", "electric-sail-updated", "electric-sail-polynomial")
@@ -57,7 +57,7 @@ def test_rates_are_the_gradient_of_the_hamiltonian(device, smoothing):
     sail, rng, checked = canonical_sail(device, 3e-3), np.random.default_rng(6), 0
     for _ in range(30):
         y, rates = start(rng), np.empty(12)
-        g, h = costates.right_hand_side(y, sail.kind, sail.parameters, smoothing, rates)
+        g, h = state_costate.right_hand_side(y, sail.kind, sail.parameters, smoothing, rates)
         assert h == pytest.approx(hamiltonian(y, sail, smoothing), rel=1e-14)
         if abs(g) < 1e-3:  # differences across the switch mean nothing
             continue

@@ -9,10 +9,9 @@ import pytest
 
 from sailviz import ephemeris
 from sailviz.constants import AU, DAY, MU_SUN
-from sailviz.design.minimum_time import costates
-from sailviz.design.minimum_time.circles import circle_to_circle, orbit_to_orbit, rendezvous
-from sailviz.design.minimum_time.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
-from sailviz.design.minimum_time.planet_rendezvous import planet_state
+from sailviz.design.minimum_time import circle_to_circle, costates, orbit_to_orbit, rendezvous
+from sailviz.design.minimum_time.planet_conditions import planet_state
+from sailviz.design.minimum_time.state_costate import SPEED_UNIT, TIME_UNIT, canonical_sail
 from sailviz.elements import Elements, elements
 
 

@@ -12,7 +12,7 @@ from scipy.interpolate import CubicHermiteSpline
 from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.design.minimum_time import costates
 from sailviz.design.minimum_time import replay as reflight
-from sailviz.design.minimum_time.costates import SPEED_UNIT, TIME_UNIT, canonical_sail
+from sailviz.design.minimum_time.state_costate import SPEED_UNIT, TIME_UNIT, canonical_sail
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
 from sailviz.propulsion import electric_sail, solar_sail

@@ -1,0 +1,231 @@
+"""The answer to a question about a transfer as the text of a scene that flies it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+
+import numpy as np
+
+from sailviz.constants import AU, DAY, MU_SUN
+from sailviz.design.minimum_time import costates, replay
+from sailviz.design.minimum_time.orbits import OrbitTransfer
+from sailviz.design.minimum_time.planar_transfer import Transfer
+from sailviz.design.minimum_time.planet_rendezvous import Rendezvous
+from sailviz.design.minimum_time.state_costate import POSITION, SPEED_UNIT, TIME_UNIT, VELOCITY, canonical_sail
+from sailviz.elements import Elements, elements
+from sailviz.propulsion.devices import ELECTRIC_SAILS
+from sailviz.propulsion.solar_sail import FILMS, Film
+from sailviz.transfers.search import Place, Solution
+from sailviz.words import nearest
+
+TABLE_ERROR = 1e-5  # rad of the attitudes of a steering table between its rows
+AFTER_SWITCH = 1e-3  # s from the row before a switch to the row after it
+LEAST_TILT = np.radians(0.01)  # of an orbit whose node is worth checking
+
+Flight = Transfer | OrbitTransfer | Rendezvous
+
+
+def solved(flight: Flight) -> replay.Solved:
+    """A Transfer, OrbitTransfer or Rendezvous as what flies it again, six costates in units of mu = 1 and one au.
+    ValueError where no flight was found."""
+    if not flight.feasible:
+        raise ValueError(f"there is no flight to write down: {flight.reason}")
+    if isinstance(flight, Transfer):
+        start, radius = flight.start, flight.initial_radius
+        return replay.from_planar(start, radius, flight.time, flight.device, flight.characteristic_acceleration)
+    parts = (flight.position, flight.velocity, flight.costates, flight.time)
+    return replay.Solved(*parts, flight.device, flight.characteristic_acceleration)
+
+
+def path_of(flight: Flight, samples: int = 1000) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Position m, velocity m/s (samples, 3) of a flight at equal steps of time, and its switches (k,) s."""
+    it = solved(flight)
+    start = np.concatenate([it.position / AU, it.velocity / SPEED_UNIT, it.costates])
+    span = it.time / TIME_UNIT
+    sail = canonical_sail(it.device, it.characteristic_acceleration)
+    found = costates.propagate(start, span, sail, times=np.linspace(0.0, span, samples))
+    return found.rows[:, POSITION] * AU, found.rows[:, VELOCITY] * SPEED_UNIT, found.switches * TIME_UNIT
+
+
+def scene_of(
+    solution: Solution | Flight,
+    form: str = "costates",
+    *,
+    title: str | None = None,
+    target: dict[str, str | float] | None = None,
+    outputs: int = 2000,
+) -> str:
+    """The text of a scene that `sailviz run` flies to the same end: TOML, for `tomllib.loads` and `load_scene`.
+
+    solution : a Solution, or a Transfer, OrbitTransfer or Rendezvous. form : "costates", which repeats the flight to
+    1e-8, or "table" of pitch and clock angle, to 1e-5. target : the scene's [target], by default the Solution's, or
+    the orbit reached. ValueError where there is no flight.
+    """
+    if form not in ("costates", "table"):
+        raise ValueError(f'there is no form "{form}". {nearest(form, ("costates", "table"))}')
+    whole = solution if isinstance(solution, Solution) else None
+    flight = solution.flight if isinstance(solution, Solution) else solution
+    it = solved(flight)
+    position, velocity, _ = path_of(flight)
+    reached = elements(position[-1], velocity[-1], MU_SUN)
+    if target is None:
+        target = whole.target.table if whole else Place("reached", _plain(reached)).table | {"name": "orbit reached"}
+    if isinstance(flight, Rendezvous) and whole:
+        target = {"name": f"orbit of {whole.target.name}", "planet": whole.target.name.lower()}
+    craft = device_words(it.device)
+    ways = f"from {whole.origin.name} to {whole.target.name}" if whole else "from orbit to orbit"
+    lines = [
+        f"title    = {_text(title or f'{craft}: the fastest way {ways}')}",
+        'thesis   = "6"',
+        f"about    = {_text(_about(flight, it, craft, ways, form))}",
+        'family   = "transfers"',
+    ]
+    if isinstance(flight, Rendezvous):
+        lines.append(f"epoch    = {np.datetime_as_string(flight.departure, 'us')}")
+    circular = isinstance(flight, Transfer) and np.isnan(flight.departure_anomaly)
+    lines += ["", "[start]", *_start(flight, it, circular)]
+    lines += ["", "[device]", *_device(it), "", "[steering]"]
+    if form == "costates":
+        numbers = flight.costates if circular else it.costates
+        units = "mu = 1, distance of the start = 1" if circular else "mu = 1 au = 1"
+        lines += ['kind = "optimal"', f"costates = {_list(numbers)}  # H = +1, {units}"]
+    else:
+        lines += _steering_table(it)
+    lines += ["", "[target]", *(f"{key} = {_value(value)}" for key, value in target.items())]
+    lines += [
+        "",
+        "[propagation]",
+        f"duration_d = {float(it.time / DAY)!r}",
+        f"outputs = {outputs}",
+        "tolerance = 1e-13",
+    ]
+    lines += _expectations(reached, position, 1e-7 if form == "costates" else 1e-5, isinstance(flight, Rendezvous))
+    return "\n".join(lines) + "\n"
+
+
+def _plain(e: Elements) -> Elements:
+    """Elements as Python's own numbers, what is rounding noise left out."""
+    a, eccentricity, inclination, raan, argument = (
+        float(x) for x in (e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument)
+    )
+    eccentricity *= eccentricity > 1e-9
+    inclination *= inclination > 1e-9
+    return Elements(a, eccentricity, inclination, raan, argument, 0.0)
+
+
+def device_words(device: Film | str) -> str:
+    """A sail in words, e.g. "Ideal solar sail"."""
+    if not isinstance(device, str):
+        return "Solar sail"
+    if device in ELECTRIC_SAILS:
+        model = device.removeprefix("electric-sail").lstrip("-")
+        return f"E-sail ({model} model)" if model else "E-sail"
+    return {"ideal": "Ideal solar sail", "eta-perfect": "Solar sail of 85 % efficiency"}.get(
+        device, f"Solar sail with the film {device.upper()}"
+    )
+
+
+def _about(flight: Flight, it: replay.Solved, craft: str, ways: str, form: str) -> str:
+    how = "its initial costates" if form == "costates" else "a table of pitch and clock angle"
+    a_c = f"{it.characteristic_acceleration * 1e3:g} mm/s²"
+    return (
+        f"**{craft}** of {a_c}, steered {ways} by {how} in **{it.time / DAY:.4f} d** and {flight.revolutions:.3f} "
+        f"revolutions: the best found, residual {flight.residual:.0e}."
+    )
+
+
+def _start(flight: Flight, it: replay.Solved, circular: bool) -> list[str]:
+    if circular and isinstance(flight, Transfer):
+        return ['kind = "circular"', f"radius_au = {_number(flight.initial_radius / AU)}"]
+    if isinstance(flight, Rendezvous):
+        return [
+            'kind = "cartesian"',
+            f"position_au = {_list(it.position / AU)}",
+            f"velocity_km_s = {_list(it.velocity / 1e3)}",
+        ]
+    e = elements(it.position, it.velocity, MU_SUN)
+    angles = {name: np.degrees(getattr(e, name)) for name in ("inclination", "raan", "argument", "true_anomaly")}
+    return [
+        'kind = "elements"',
+        f"semi_major_axis_au = {_number(e.semi_major_axis / AU)}",
+        f"eccentricity = {_number(e.eccentricity)}",
+        *(f"{name}_deg = {_number(value)}" for name, value in angles.items()),
+    ]
+
+
+def _device(it: replay.Solved) -> list[str]:
+    strength = f"characteristic_acceleration_mm_s2 = {_number(it.characteristic_acceleration * 1e3)}"
+    if isinstance(it.device, Film):
+        b = ", ".join(f"{name} = {_number(getattr(it.device, name))}" for name in ("b1", "b2", "b3", "efficiency"))
+        return ['kind = "solar-sail"', f"film = {{ {b} }}", strength]
+    if it.device in FILMS:
+        return ['kind = "solar-sail"', f'film = "{it.device}"', strength]
+    model = it.device.removeprefix("electric-sail").lstrip("-") or "final"
+    return ['kind = "electric-sail"', f'model = "{model}"', strength]
+
+
+def _steering_table(it: replay.Solved) -> list[str]:
+    found = replay.steering_table(it, error=TABLE_ERROR)
+    time = np.round(found.time, 4)
+    again = np.nonzero(np.diff(time) <= 0)[0] + 1  # the second row of a switch
+    time[again] = time[again - 1] + AFTER_SWITCH
+    columns = {
+        "time_d": [f"{t:.12g}" for t in time / DAY],
+        "pitch_deg": [f"{x:.6f}" for x in np.degrees(found.pitch)],
+        "clock_deg": [f"{x:.6f}" for x in np.degrees(found.clock)],
+    }
+    if found.throttle.min() < 1:
+        columns["throttle"] = [f"{x:g}" for x in found.throttle]
+    return ['kind = "table"', *(f"{name} = {_wrapped(values)}" for name, values in columns.items())]
+
+
+def _expectations(reached: Elements, position: np.ndarray, within: float, met: bool) -> list[str]:
+    """What a flight's end must be: the elements that the optimisation aimed at, or the place of the planet."""
+    wanted = {
+        "semi_major_axis_au": (reached.semi_major_axis / AU, within),
+        "eccentricity": (float(reached.eccentricity), within),
+    }
+    tilt = float(reached.inclination)
+    if tilt > 1e-9:
+        wanted["inclination_deg"] = (np.degrees(tilt), np.degrees(within))
+    if tilt > LEAST_TILT and abs(np.sin(reached.raan / 2)) > 1e-6:  # a node at 0 would be measured as 0 or as 360
+        wanted["raan_deg"] = (np.degrees(reached.raan), np.degrees(within) / np.sin(tilt))
+    if met:
+        longitude = np.unwrap(np.arctan2(position[:, 1], position[:, 0]))
+        wanted["longitude_deg"] = (np.degrees(longitude[-1]), np.degrees(within))
+        wanted["radius_au"] = (np.linalg.norm(position[-1]) / AU, within)
+    lines = []
+    for quantity, (value, tolerance) in wanted.items():
+        if quantity == "eccentricity" and value < 0.1 * tolerance:
+            value = 0.0
+        lines += ["", "[[expect]]", f'quantity = "{quantity}"', 'at = "end"']
+        lines += [f"value = {float(f'{value:.10g}')!r}", f"within = {tolerance:.1e}"]
+    return lines
+
+
+def _text(words: str) -> str:
+    return json.dumps(words, ensure_ascii=False)
+
+
+def _number(value: float) -> str:
+    return repr(float(value))
+
+
+def _value(value: str | float) -> str:
+    return _text(value) if isinstance(value, str) else _number(value)
+
+
+def _list(values: Iterable[float]) -> str:
+    return "[" + ", ".join(_number(x) for x in values) + "]"
+
+
+def _wrapped(words: Iterable[str], width: int = 110) -> str:
+    """A list over several lines."""
+    lines, line = [], "   "
+    for word in words:
+        if len(line) + len(word) + 2 > width:
+            lines.append(line)
+            line = "   "
+        line += f" {word},"
+    return "[\n" + "\n".join([*lines, line]) + "\n]"

@@ -92,7 +92,7 @@ class OrbitProblem:
             following = min(1.0, share + step)
             origin = self.origin.bent(following, self.origin, self.origin.semi_major_axis)
             target = self.target.bent(following, self.origin, radius)
-            guess = x if before is None else x.ahead(before, (following - share) / (share - at))
+            guess = x if before is None else x.ahead(before, following - share, share - at)
             y, miss = OrbitProblem(origin, target, self.sail).search(guess, smoothing)
             if miss > NEAR:
                 step *= 0.4

@@ -154,7 +154,7 @@ class Meeting:
         share, step, before, at = 0.0, 0.1, None, 0.0
         while share < 1.0:
             following = min(1.0, share + step)
-            guess = x if before is None else x.ahead(before, (following - share) / (share - at))
+            guess = x if before is None else x.ahead(before, following - share, share - at)
             y, residual = self.search(guess, self.smoothing, shift=shift * (1 - following))
             if residual > NEAR:
                 step *= 0.4

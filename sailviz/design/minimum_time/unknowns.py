@@ -42,10 +42,10 @@ class Unknowns:
         """From (7,) costates and span."""
         return cls(packed[_COSTATES], float(packed[_SPAN]), departure)
 
-    def ahead(self, before: Unknowns, share: float) -> Unknowns:
-        """Beyond these unknowns by a share of the way that they came from those before."""
+    def ahead(self, before: Unknowns, step: float, last: float) -> Unknowns:
+        """On a step further along the line on which a last step led here from the unknowns before."""
         packed = self.packed
-        return Unknowns.unpacked(packed + (packed - before.packed) * share, self.departure)
+        return Unknowns.unpacked(packed + (packed - before.packed) * step / last, self.departure)
 
 
 def columns(batch: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

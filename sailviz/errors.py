@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import numpy as np
 
 
 @dataclass(frozen=True)
@@ -39,7 +44,7 @@ class PropagationError(SailvizError):
     time : float, s since the start; state : (7,) position m, velocity m/s, mass kg.
     """
 
-    def __init__(self, reason: str, time: float, state):
+    def __init__(self, reason: str, time: float, state: Sequence[float] | np.ndarray):
         self.reason = reason
         self.time = time
         self.state = state

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from difflib import get_close_matches
 
 from sailviz.constants import AU, DAY, YEAR
@@ -35,7 +36,7 @@ def acceleration(value: float) -> str:
     return f"{value * 1e3:.5g} mm/s²" if abs(value) >= 1e-5 else f"{value * 1e6:.5g} µm/s²"
 
 
-def nearest(word: str, words) -> str:
+def nearest(word: str, words: Iterable[str]) -> str:
     """ "Did you mean ...?" or the list of what is allowed."""
     words = list(words)
     low = {w.lower(): w for w in words}
@@ -43,3 +44,12 @@ def nearest(word: str, words) -> str:
     if close:
         return f'Did you mean "{low[close[0]]}"?'
     return f"Allowed: {', '.join(words)}." if len(words) <= 24 else ""
+
+
+def shown(value: object) -> str:
+    """A value as a message shows it: text in quotes, nothing longer than a line bears."""
+    try:
+        text = repr(value) if not isinstance(value, str) else f'"{value}"'
+    except ValueError:  # Python writes no number of more than 4300 digits
+        return "a number of thousands of digits"
+    return text if len(text) <= 60 else text[:57] + "..."

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from sailviz.scene.values import POSITIVE, Angle, Length, Mu, Section, _one_of, _wrong
+from sailviz.scene.values import POSITIVE, Angle, Length, Mu, Section, one_of, wrong
 
 
 class CustomBody(Section):
@@ -34,10 +34,10 @@ class Target(Section):
     argument: Angle = 0.0
 
     @model_validator(mode="after")
-    def _which(self):
-        _one_of(self, "planet", "radius", "semi_major_axis")
+    def _which(self) -> Self:
+        one_of(self, "planet", "radius", "semi_major_axis")
         if self.radius is not None and (self.eccentricity or self.argument):
-            raise _wrong("radius is that of a circle: an ellipse has semi_major_axis and eccentricity")
+            raise wrong("radius is that of a circle: an ellipse has semi_major_axis and eccentricity")
         if self.planet is not None and (self.eccentricity or self.inclination or self.raan or self.argument):
-            raise _wrong("the orbit of a planet is known: give the planet alone")
+            raise wrong("the orbit of a planet is known: give the planet alone")
         return self

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -21,8 +21,8 @@ from sailviz.scene.values import (
     Thickness,
     Time,
     Voltage,
-    _one_of,
-    _wrong,
+    one_of,
+    wrong,
 )
 
 DESIGNED = Literal["as designed"]
@@ -37,9 +37,9 @@ class FilmCoefficients(Section):
     efficiency: Annotated[float, Field(gt=0, le=1)] = 1.0
 
     @model_validator(mode="after")
-    def _pushes(self):
+    def _pushes(self) -> Self:
         if self.b1 + self.b2 + self.b3 <= 0:
-            raise _wrong("b1 + b2 + b3 must be positive: the sail is pushed away from the Sun")
+            raise wrong("b1 + b2 + b3 must be positive: the sail is pushed away from the Sun")
         return self
 
 
@@ -64,10 +64,10 @@ class Device(Section):
     drag_coefficient: Annotated[float, POSITIVE] = 2.2
 
     @model_validator(mode="after")
-    def _ordered(self):
+    def _ordered(self) -> Self:
         edges = [edge for pair in self.active or [] for edge in pair]
         if edges != sorted(set(edges)):
-            raise _wrong("active must list [start, stop] pairs, each after the one before")
+            raise wrong("active must list [start, stop] pairs, each after the one before")
         return self
 
 
@@ -80,9 +80,9 @@ class VoltageControl(Section):
     dead_band: Annotated[Voltage, Field(ge=0)] = 0.0
 
     @model_validator(mode="after")
-    def _rises(self):
+    def _rises(self) -> Self:
         if not self.minimum_voltage <= self.nominal_voltage <= self.maximum_voltage:
-            raise _wrong("voltages must rise from minimum_voltage over nominal_voltage to maximum_voltage")
+            raise wrong("voltages must rise from minimum_voltage over nominal_voltage to maximum_voltage")
         return self
 
 
@@ -120,8 +120,8 @@ class SolarSail(Device):
     control: ElectrochromicControl | None = None
 
     @model_validator(mode="after")
-    def _strength(self):
-        _one_of(self, "characteristic_acceleration", "lightness_number", "area+mass")
+    def _strength(self) -> Self:
+        one_of(self, "characteristic_acceleration", "lightness_number", "area+mass")
         return self
 
 
@@ -140,12 +140,12 @@ class ElectricSail(Device):
     control: Annotated[PressureControl | DistanceControl, Field(discriminator="kind")] | None = None
 
     @model_validator(mode="after")
-    def _strength(self):
-        _one_of(self, "characteristic_acceleration", "tethers+tether_length+voltage+mass")
+    def _strength(self) -> Self:
+        one_of(self, "characteristic_acceleration", "tethers+tether_length+voltage+mass")
         if self.voltage is not None and self.voltage <= self.wind_potential:
-            raise _wrong("voltage must exceed wind_potential, or there is no thrust")
+            raise wrong("voltage must exceed wind_potential, or there is no thrust")
         if self.control is not None and self.control.nominal_voltage <= self.wind_potential:
-            raise _wrong("control.nominal_voltage must exceed wind_potential, or there is no thrust")
+            raise wrong("control.nominal_voltage must exceed wind_potential, or there is no thrust")
         return self
 
 
@@ -169,13 +169,13 @@ class PlasmaBrake(Device):
     off_below: Annotated[Length, Field(ge=0)] = 200e3
 
     @model_validator(mode="after")
-    def _agrees(self):
+    def _agrees(self) -> Self:
         if self.voltage == 0:
-            raise _wrong("voltage 0 makes no brake: give the size of the voltage")
+            raise wrong("voltage 0 makes no brake: give the size of the voltage")
         if self.voltage < 0 and self.polarity == "positive":
-            raise _wrong('voltage is negative and polarity "positive": give one sign only')
+            raise wrong('voltage is negative and polarity "positive": give one sign only')
         if (self.eclipse == "limited") != (self.eclipse_power is not None):
-            raise _wrong('eclipse = "limited" and eclipse_power, what is left in the shadow, belong together')
+            raise wrong('eclipse = "limited" and eclipse_power, what is left in the shadow, belong together')
         return self
 
 
@@ -188,8 +188,8 @@ class Thruster(Device):
     specific_impulse: Annotated[Time, POSITIVE] | None = None
 
     @model_validator(mode="after")
-    def _strength(self):
-        _one_of(self, "acceleration", "thrust+mass")
+    def _strength(self) -> Self:
+        one_of(self, "acceleration", "thrust+mass")
         return self
 
 
@@ -200,3 +200,8 @@ class NoDevice(Device):
 
 
 Devices = Annotated[SolarSail | ElectricSail | PlasmaBrake | Thruster | NoDevice, Field(discriminator="kind")]
+
+
+def control_of(device: Device) -> PressureControl | DistanceControl | ElectrochromicControl | None:
+    """How a device answers to wind or sunlight that varies; None where it does not."""
+    return device.control if isinstance(device, (SolarSail, ElectricSail)) else None

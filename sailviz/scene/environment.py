@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from datetime import date, datetime
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -20,8 +20,8 @@ from sailviz.scene.values import (
     Section,
     SolarFlux,
     Time,
-    _one_of,
-    _wrong,
+    one_of,
+    wrong,
 )
 
 
@@ -63,9 +63,9 @@ class BurrWind(DrawnWind):
     scale: Annotated[Pressure, POSITIVE]
 
     @model_validator(mode="after")
-    def _mean_exists(self):
+    def _mean_exists(self) -> Self:
         if self.c * self.d <= 1:
-            raise _wrong("with c d not above 1 this law has no mean pressure")
+            raise wrong("with c d not above 1 this law has no mean pressure")
         return self
 
 
@@ -82,8 +82,8 @@ class ReplayedWind(Section):
     repair: bool = False
 
     @model_validator(mode="after")
-    def _begins(self):
-        _one_of(self, "start", "seed")
+    def _begins(self) -> Self:
+        one_of(self, "start", "seed")
         return self
 
 

@@ -1,17 +1,17 @@
-"""From the keys a person writes to SI fields, and from what pydantic finds wrong to sentences that person can act
-on."""
+"""From what pydantic finds wrong with fields in SI to sentences that a person can act on, at places in the file."""
 
 from __future__ import annotations
 
 import re
 from dataclasses import replace
 
-from pydantic_core import ValidationError
+from pydantic import BaseModel
+from pydantic_core import ErrorDetails, ValidationError
 
 from sailviz.errors import Fault
-from sailviz.scene.units_in_keys import Places, _inside, _shown, _Written
+from sailviz.scene.units_in_keys import Conversion, Written, dimension_and_models
 from sailviz.units import spelled
-from sailviz.words import nearest
+from sailviz.words import nearest, shown
 
 _TYPE_WORDS = {
     "float_type": "a number",
@@ -34,7 +34,7 @@ _LIMITS = {
 }
 
 
-def _sentence(error, written: _Written) -> str:
+def _sentence(error: ErrorDetails, written: Written) -> str:
     kind, context, value = error["type"], error.get("ctx", {}), error["input"]
     if kind in _LIMITS:
         words, key = _LIMITS[kind]
@@ -42,13 +42,13 @@ def _sentence(error, written: _Written) -> str:
         try:
             got = f"{value / written.factor:.6g}"
         except OverflowError:  # a whole number beyond the range of float
-            got = _shown(value)
+            got = shown(value)
         return f"must be {words} {limit:.6g}{' ' + written.unit if written.unit else ''}, is {got}."
     if kind in _TYPE_WORDS:
-        return f"must be {_TYPE_WORDS[kind]}, is {_shown(value)}."
+        return f"must be {_TYPE_WORDS[kind]}, is {shown(value)}."
     if kind == "literal_error":
-        words = re.findall(r"'([^']*)'", context["expected"])
-        return f"{_shown(value)} is not allowed here. {nearest(str(value), words)}"
+        allowed = re.findall(r"'([^']*)'", context["expected"])
+        return f"{shown(value)} is not allowed here. {nearest(str(value), allowed)}"
     if kind == "finite_number":
         return "must be finite."
     if kind in ("too_short", "too_long"):
@@ -61,25 +61,23 @@ def _sentence(error, written: _Written) -> str:
     return message[0].lower() + message[1:] + ("" if message.endswith((".", "?")) else ".")
 
 
-def faults_of(errors, places: Places | None = None, model=None) -> list[Fault]:
-    """Faults from a pydantic ValidationError, or from (place, sentence) pairs."""
-    if not isinstance(errors, ValidationError):
-        return [Fault(place, what) for place, what in errors]
-    places = Places() if places is None else places
-    quantities = _quantities(model) if model else {}
+_FOUND_BEFORE = ("union_tag_invalid", "union_tag_not_found", "extra_forbidden")  # `convert` has said it, with a hint
+
+
+def faults_of(errors: ValidationError, converted: Conversion, model: type[BaseModel]) -> list[Fault]:
+    """Sentences for what pydantic found wrong with a model's fields in SI, at their places in the file."""
+    quantities = _quantities(model)
     grouped: dict[str, list[str]] = {}
     for error in errors.errors(include_url=False):
-        if error["type"] in _FOUND_BEFORE or places.passed_over & set(error["loc"]):
+        if error["type"] in _FOUND_BEFORE or converted.passed_over & set(error["loc"]):
             continue
-        path, written = _place(error, places)
-        among_others = str(error["loc"][-1]).startswith("literal[")
-        if error["type"] == "literal_error" and among_others and isinstance(error["input"], dict):
+        last = str(error["loc"][-1])
+        if error["type"] == "literal_error" and last.startswith("literal[") and isinstance(error["input"], dict):
             continue  # a table where a word was also allowed: what is wrong with the table is said elsewhere
+        path, written = _place(error, converted)
         if error["type"] == "missing":
-            dimension = quantities.get(error["loc"][-1])
-            sentence = "is missing." + (
-                f" Write {' or '.join(spelled(error['loc'][-1], dimension))}." if dimension else ""
-            )
+            dimension = quantities.get(last)
+            sentence = "is missing." + (f" Write {' or '.join(spelled(last, dimension))}." if dimension else "")
         else:
             sentence = _sentence(error, written)
         sentences = grouped.setdefault(path, [])
@@ -91,14 +89,11 @@ def faults_of(errors, places: Places | None = None, model=None) -> list[Fault]:
     ]
 
 
-_FOUND_BEFORE = ("union_tag_invalid", "union_tag_not_found", "extra_forbidden")  # `convert` has said it, with a hint
-
-
-def _quantities(model, seen=None) -> dict[str, str]:
+def _quantities(model: type[BaseModel], seen: dict[str, str] | None = None) -> dict[str, str]:
     """Field name -> dimension of every quantity in a model and its sections."""
     seen = {} if seen is None else seen
     for name, field in model.model_fields.items():
-        dimension, models = _inside(field.annotation, field.metadata)
+        dimension, models = dimension_and_models(field.annotation, field.metadata)
         if dimension:
             seen.setdefault(name, dimension)
         for inner in models:
@@ -106,27 +101,27 @@ def _quantities(model, seen=None) -> dict[str, str]:
     return seen
 
 
-def _place(error, places: Places) -> tuple[str, _Written]:
+def _place(error: ErrorDetails, converted: Conversion) -> tuple[str, Written]:
     """Path in the file of a pydantic error. Its location also names union members, which no file has: they are
     skipped by following only what the converted scene knows."""
     path = ""
-    known = _Written("")
+    known = Written("")
     location = error["loc"]
     for i, part in enumerate(location):
         if isinstance(part, int):
             path += f"[{part}]"
             continue
         step = f"{path}.{part}" if path else str(part)
-        if dict.__contains__(places, step):
+        if step in converted.places:
             path = step
-            known = dict.__getitem__(places, step)
+            known = converted.places[step]
         elif error["type"] == "missing" and i == len(location) - 1:
             path = step
-    written = places.get(path)
+    written = converted.path(path)
     if written is None:  # a missing field, or an entry of a list: the nearest known parent, as written
         parent = re.sub(r"(\.[^.\[\]]+|\[\d+\])$", "", path)
         rest = path[len(parent) :]
-        written = (places.get(parent, parent) or "") + rest if parent != path else path
+        written = (converted.path(parent) or parent) + rest if parent != path else path
     return written.lstrip("."), known
 
 
@@ -138,7 +133,8 @@ def _parent(path: str) -> str:
 def locate(faults: list[Fault], text: str) -> list[Fault]:
     """Faults without repetition, with line numbers where the text of the file tells them."""
     lines = _lines(text)
-    found, paths = [], []
+    found: list[Fault] = []
+    paths: list[str] = []
     for fault in faults:
         if (
             any(fault.where == p or fault.where.startswith((p + ".", p + "[")) for p in paths)

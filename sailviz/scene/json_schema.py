@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from sailviz.units import spelled
 
 
-def with_units(schema: dict) -> dict:
+def with_units(schema: dict[str, Any]) -> dict[str, Any]:
     """A JSON Schema in which every quantity is spelled out in each of its units."""
     for part in (schema, *schema.get("$defs", {}).values()):
         _spell_out(part)
     return schema
 
 
-def _dimension_of(schema) -> str | None:
+def _dimension_of(schema: dict[str, Any]) -> str | None:
     if "x-dimension" in schema:
-        return schema["x-dimension"]
+        return str(schema["x-dimension"])
     options = schema.get("anyOf", [])
     return next((found for option in options if (found := _dimension_of(option))), None)
 
 
-def _without_si(schema):
+def _without_si(schema: dict[str, Any]) -> dict[str, Any]:
     """The property without what holds in SI only: bounds other than zero, defaults."""
     bounds = ("minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
     kept = {
@@ -32,7 +34,7 @@ def _without_si(schema):
     return kept
 
 
-def _spell_out(schema: dict) -> None:
+def _spell_out(schema: dict[str, Any]) -> None:
     properties = schema.get("properties", {})
     required = schema.get("required", [])
     for name in list(properties):

@@ -1,14 +1,16 @@
 """The scene file: TOML with the unit in every physical key, checked whole, SI once loaded.
 
 Imports neither rerun nor numba nor scipy, so that `sailviz check` answers at once. What the values mean as arrays is
-simulation.py's business.
+the business of `simulation`.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import os
 import tomllib
+from collections.abc import Mapping
 from datetime import UTC, date, datetime
 from functools import cache
 from pathlib import Path
@@ -17,12 +19,13 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, PrivateAttr
 from pydantic_core import ValidationError
 
-from sailviz.errors import SceneError
+from sailviz.errors import Fault, SceneError
 from sailviz.scene.body import CustomBody, Target
 from sailviz.scene.conflicts import conflicts
 from sailviz.scene.device import Devices
 from sailviz.scene.environment import Environment
 from sailviz.scene.faults import faults_of, locate
+from sailviz.scene.overrides import overridden
 from sailviz.scene.sections import Approximation, Chaos, Ensemble, Expectation, Propagation, Recording, Watched
 from sailviz.scene.start import Start
 from sailviz.scene.steering import Steering
@@ -58,7 +61,7 @@ class Scene(Section):
 
     _text: str = PrivateAttr("")
     _source: str = PrivateAttr("scene")
-    _raw: dict = PrivateAttr(default_factory=dict)
+    _raw: dict[str, Any] = PrivateAttr(default_factory=dict)
 
     @property
     def text(self) -> str:
@@ -70,7 +73,7 @@ class Scene(Section):
         """File or shipped name that the scene came from, for messages."""
         return self._source
 
-    def resolved(self) -> dict:
+    def resolved(self) -> dict[str, Any]:
         """Every value, defaults included, SI, ready for JSON."""
         return self.model_dump(mode="json")
 
@@ -79,7 +82,7 @@ class Scene(Section):
         canonical = json.dumps(self.resolved(), sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(canonical.encode()).hexdigest()[:16]
 
-    def with_values(self, values: dict[str, Any]) -> Scene:
+    def with_values(self, values: Mapping[str, Any]) -> Scene:
         """A copy with other values. values : {"device.lightness_number": 0.1, "propagation.duration_yr": 2}, keys
         and units as in a scene file; a key in another unit replaces the one in the file. SceneError as for
         `load_scene`."""
@@ -95,110 +98,71 @@ class Scene(Section):
         return self.epoch.astimezone(UTC).replace(tzinfo=None) if self.epoch.tzinfo else self.epoch
 
 
-# ---------------------------------------------------------------- loading
-def load_scene(source, set: dict[str, Any] | None = None) -> Scene:
+SceneSource = str | os.PathLike[str] | dict[str, Any] | Scene  # what every verb that takes a scene takes
+
+
+def load_scene(source: SceneSource, set: Mapping[str, Any] | None = None) -> Scene:
     """Read, check and convert a scene.
 
-    source : path of a TOML file, the name of a shipped scene ("displaced/circular"), or a dict as tomllib would give
-    it. set : values to put over those of the file, keys dotted: {"propagation.duration_yr": 1}. Raises SceneError
-    with every fault at once.
+    source : path of a TOML file, the name of a shipped scene ("displaced/circular"), a dict as tomllib would give it,
+    or a Scene, which comes back as it is. set : values to put over those of the source, keys dotted:
+    {"propagation.duration_yr": 1}. Raises SceneError with every fault at once.
     """
+    if isinstance(source, Scene):
+        return source.with_values(set) if set else source
     if isinstance(source, dict):
         return _built(source, set or {}, "", "scene")
-    path, name = _find(source)
+    path, name = find_scene(source)
     try:
         text = path.read_text(encoding="utf-8-sig")
     except OSError as error:
-        raise SceneError(faults_of([("file", error.strerror or str(error))]), name) from None
+        raise SceneError([Fault("file", error.strerror or str(error))], name) from None
     except UnicodeDecodeError:
-        raise SceneError(faults_of([("file", "is not UTF-8 text, so not a scene")]), name) from None
+        raise SceneError([Fault("file", "is not UTF-8 text, so not a scene")], name) from None
     try:
         raw = tomllib.loads(text)
     except ValueError as error:  # tomllib's own, or Python's for a number of thousands of digits
-        raise SceneError(faults_of([("file", f"is not valid TOML: {error}")]), name) from None
+        raise SceneError([Fault("file", f"is not valid TOML: {error}")], name) from None
     except RecursionError:
-        raise SceneError(faults_of([_TOO_DEEP]), name) from None
+        raise SceneError([_TOO_DEEP], name) from None
     return _built(raw, set or {}, text, name)
 
 
-_TOO_DEEP = ("file", "is nested too deeply")
-
-
-def _built(raw: dict, values: dict[str, Any], text: str, name: str) -> Scene:
-    try:
-        return _validated(_overridden(raw, values), text, name)
-    except RecursionError:
-        raise SceneError(faults_of([_TOO_DEEP]), name) from None
-
-
-def _find(source) -> tuple[Path, str]:
+def find_scene(source: str | os.PathLike[str]) -> tuple[Path, str]:
+    """(file, name for messages) of a path or a shipped name. SceneError, with the nearest name, if there is none."""
     path = Path(source)
     try:
         if path.is_file():
             return path, str(source)
     except OSError as error:  # a name that no file can have
-        raise SceneError(faults_of([("file", error.strerror or str(error))]), str(source)) from None
+        raise SceneError([Fault("file", error.strerror or str(error))], str(source)) from None
     known = shipped_scenes()
     name = str(source).removesuffix(".toml")
     if name in known:
         return known[name], name
     what = "is a folder, not a scene file." if path.is_dir() else "no such file or shipped scene."
-    raise SceneError(faults_of([("file", f"{what} {nearest(name, known)}")]), str(source))
+    raise SceneError([Fault("file", f"{what} {nearest(name, known)}")], str(source))
 
 
-def _overridden(raw: dict, values: dict[str, Any]) -> dict:
-    """A deep copy of raw with dotted keys replaced."""
-    result = _copy(raw)
-    for key, value in values.items():
-        *path, last = key.split(".")
-        table = result
-        for part in path:
-            if isinstance(table, list) and part.isdecimal() and len(part) < 9 and int(part) < len(table):
-                table = table[int(part)]
-                continue
-            if isinstance(table, dict) and not isinstance(table.get(part, {}), (dict, list)):
-                table[part] = {}
-            table = table.setdefault(part, {}) if isinstance(table, dict) else None
-            if table is None:
-                raise SceneError(faults_of([(key, "no such place in the scene")]), "--set")
-        if not isinstance(table, dict):
-            raise SceneError(faults_of([(key, "no such place in the scene")]), "--set")
-        for sibling in _same_quantity(last, table):
-            del table[sibling]
-        table[last] = _copy(value)
-    return result
+_TOO_DEEP = Fault("file", "is nested too deeply")
 
 
-def _copy(value):
-    if isinstance(value, dict):
-        return {key: _copy(item) for key, item in value.items()}
-    return [_copy(item) for item in value] if isinstance(value, list) else value
-
-
-def _same_quantity(key: str, table: dict) -> list[str]:
-    """Keys of the table that say the same quantity in another unit."""
-    from sailviz.units import UNITS
-
-    for units in UNITS.values():
-        for unit in units:
-            if unit and key.endswith(f"_{unit}"):
-                stem = key.removesuffix(f"_{unit}")
-                twins = {stem, *(f"{stem}_{other}" for other in units)}
-                found = [name for name in table if name in twins and name != key]
-                if found:
-                    return found
-    return []
-
-
-def _validated(raw: dict, text: str, source: str) -> Scene:
-    converted, faults, written = convert(Scene, raw)
-    scene = None
+def _built(raw: dict[str, Any], values: Mapping[str, Any], text: str, name: str) -> Scene:
     try:
-        scene = Scene.model_validate(converted)
+        return _validated(overridden(raw, values), text, name)
+    except RecursionError:
+        raise SceneError([_TOO_DEEP], name) from None
+
+
+def _validated(raw: dict[str, Any], text: str, source: str) -> Scene:
+    fields, converted = convert(Scene, raw)
+    faults = converted.faults
+    try:
+        scene = Scene.model_validate(fields)
     except ValidationError as error:
-        faults += faults_of(error, written, Scene)
-    if scene is not None and not faults:
-        faults = faults_of([(written.get(place, place), what) for place, what in conflicts(scene)])
+        raise SceneError(locate(faults + faults_of(error, converted, Scene), text), source) from None
+    if not faults:
+        faults = [Fault(converted.path(place) or place, what) for place, what in conflicts(scene)]
     if faults:
         raise SceneError(locate(faults, text), source)
     scene._text, scene._source, scene._raw = text, source, raw
@@ -206,7 +170,7 @@ def _validated(raw: dict, text: str, source: str) -> Scene:
 
 
 @cache
-def schema() -> dict:
+def schema() -> dict[str, Any]:
     """JSON Schema of the scene file, every spelling of every quantity included, for editors and other tools."""
     from sailviz.scene.json_schema import with_units
 

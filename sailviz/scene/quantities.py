@@ -98,7 +98,7 @@ def of_ensemble(ensemble: EnsembleStatistics, quantity: Quantity, statistic: str
     """A statistic of the ends of an ensemble's flights, in the quantity's unit: "mean", "miss" (mean less nominal) or
     "deviation"; of thrust factor, voltage and saturation the mean over flights and time. NaN where there is none."""
     if quantity.stem in MEANS and statistic == "mean":
-        return getattr(ensemble, MEANS[quantity.stem]) / quantity.factor
+        return float(getattr(ensemble, MEANS[quantity.stem]) / quantity.factor)
     if quantity.stem not in PLACES or not ensemble.planar:
         return float("nan")
     k = PLACES[quantity.stem]

@@ -5,13 +5,13 @@ Imports neither rerun nor numba nor scipy, so that `sailviz check` answers at on
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self, get_args
 
 from pydantic import Field, model_validator
 
 from sailviz.scene.device import DistanceControl, ElectrochromicControl, PressureControl
 from sailviz.scene.environment import Winds
-from sailviz.scene.values import POSITIVE, Angle, Length, Section, Time, _one_of, _wrong
+from sailviz.scene.values import POSITIVE, Angle, Length, Section, Time, one_of, wrong
 from sailviz.words import nearest
 
 
@@ -23,9 +23,9 @@ class DenseOutput(Section):
     output_interval: Annotated[Time, POSITIVE]
 
     @model_validator(mode="after")
-    def _window(self):
+    def _window(self) -> Self:
         if self.end - self.start < self.output_interval:
-            raise _wrong("the window from start to end is shorter than its output_interval")
+            raise wrong("the window from start to end is shorter than its output_interval")
         return self
 
 
@@ -41,11 +41,11 @@ class Propagation(Section):
     largest_step: Annotated[Time, POSITIVE] | None = None
 
     @model_validator(mode="after")
-    def _grid(self):
+    def _grid(self) -> Self:
         if self.outputs is not None and self.output_interval is not None:
-            raise _wrong("give outputs or output_interval, not both")
+            raise wrong("give outputs or output_interval, not both")
         if self.output_interval is not None and self.output_interval > self.duration:
-            raise _wrong("output_interval is longer than duration")
+            raise wrong("output_interval is longer than duration")
         return self
 
 
@@ -60,12 +60,12 @@ class Watched(Section):
     stop: bool = False
 
     @model_validator(mode="after")
-    def _level(self):
+    def _level(self) -> Self:
         for field in ("radius", "altitude"):
             of_it = (field, "mean-altitude") if field == "altitude" else (field,)
             if (self.kind in of_it) != (getattr(self, field) is not None):
                 needs = f'kind = "{self.kind}" needs {field}'
-                raise _wrong(needs if self.kind in of_it else f'{field} belongs to kind = "{field}" and to no other')
+                raise wrong(needs if self.kind in of_it else f'{field} belongs to kind = "{field}" and to no other')
         return self
 
 
@@ -87,7 +87,7 @@ class QuasiCircularApproximation(Section):
 Approximation = Annotated[FirstOrderApproximation | QuasiCircularApproximation, Field(discriminator="kind")]
 
 
-class Swarm(Section):
+class ManyFlights(Section):
     """Many flights of the scene side by side. control : "device" as the device has it, "none", or one of its own;
     solar_wind : another wind than the scene's."""
 
@@ -99,7 +99,7 @@ class Swarm(Section):
     solar_wind: Winds | None = None
 
 
-class Ensemble(Swarm):
+class Ensemble(ManyFlights):
     """Flights through winds (or sunshine) of their own. seed : that of the wind if absent; keep : flights drawn
     whole."""
 
@@ -108,7 +108,7 @@ class Ensemble(Swarm):
     keep: Annotated[int, Field(ge=1, le=200)] = 60
 
 
-class Chaos(Swarm):
+class Chaos(ManyFlights):
     """What order + 1 flights tell about a gamma-distributed pressure that stays the same for a whole flight."""
 
     order: Annotated[int, Field(ge=1, le=30)] = 5
@@ -121,6 +121,10 @@ class Recording(Section):
     play_duration: Annotated[Time, POSITIVE] = 40.0
 
 
+OfRows = Literal["start", "end", "min", "max", "mean", "drift"]
+STATISTICS_OF_ROWS: tuple[str, ...] = get_args(OfRows)
+
+
 class Expectation(Section):
     """A quantity that the run must reach: value and tolerance in the quantity's own unit. ensemble : of its flights
     instead, a statistic of their ends: the mean, the mean miss of the nominal flight's end, or the standard
@@ -130,24 +134,24 @@ class Expectation(Section):
     ensemble: str | None = None
     statistic: Literal["mean", "miss", "deviation"] | None = None
     closed_form: Literal["kepler", "reduced-kepler", "displaced-orbit", "logarithmic-spiral"] | None = None
-    at: Literal["start", "end", "min", "max", "mean", "drift"] | str | None = None
+    at: OfRows | str | None = None
     at_time: Time | None = None
     value: float
     within: Annotated[float, POSITIVE] | None = None
     within_percent: Annotated[float, POSITIVE] | None = None
 
     @model_validator(mode="after")
-    def _known(self):
+    def _known(self) -> Self:
         from sailviz.scene.quantities import spellings
 
         if self.quantity not in spellings():
-            raise _wrong(f'unknown quantity "{self.quantity}". {nearest(self.quantity, spellings())}')
+            raise wrong(f'unknown quantity "{self.quantity}". {nearest(self.quantity, spellings())}')
         if (self.quantity == "closed_form_error") != (self.closed_form is not None):
-            raise _wrong('closed_form belongs to quantity = "closed_form_error" and to no other')
-        _one_of(self, "at", "at_time")
+            raise wrong('closed_form belongs to quantity = "closed_form_error" and to no other')
+        one_of(self, "at", "at_time")
         if (self.ensemble is None) != (self.statistic is None):
-            raise _wrong("ensemble and statistic belong together")
-        _one_of(self, "within", "within_percent")
+            raise wrong("ensemble and statistic belong together")
+        one_of(self, "within", "within_percent")
         if self.value == 0 and self.within_percent is not None:
-            raise _wrong("of a value of 0 no percentage can be taken: give within")
+            raise wrong("of a value of 0 no percentage can be taken: give within")
         return self

@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from pydantic import BaseModel
+
+from sailviz.scene.units_in_keys import dimension_and_models
 from sailviz.words import acceleration, angle, duration, length
+
+if TYPE_CHECKING:
+    from sailviz.scene.loading import Scene
 
 _SI = {
     "length": "m",
@@ -28,33 +37,28 @@ _SI = {
 _WORDS = {"length": length, "time": duration, "angle": angle, "acceleration": acceleration}
 
 
-def resolved_lines(scene) -> list[str]:
+def resolved_lines(scene: Scene) -> list[str]:
     """Every value of a scene, defaults included: path = SI value, and in words where that reads better."""
-    from sailviz.scene.units_in_keys import _inside
+    return list(_section_lines(scene, ""))
 
-    lines = []
 
-    def walk(section, path):
-        for name, field in type(section).model_fields.items():
-            value = getattr(section, name)
-            here = f"{path}.{name}" if path else name
-            dimension, _ = _inside(field.annotation, field.metadata)
-            show(value, dimension, here)
+def _section_lines(section: BaseModel, path: str) -> Iterator[str]:
+    for name, field in type(section).model_fields.items():
+        dimension, _ = dimension_and_models(field.annotation, field.metadata)
+        yield from _value_lines(getattr(section, name), dimension, f"{path}.{name}" if path else name)
 
-    def show(value, dimension, here):
-        if hasattr(type(value), "model_fields"):
-            walk(value, here)
-        elif isinstance(value, list) and value and hasattr(type(value[0]), "model_fields"):
-            for i, item in enumerate(value):
-                walk(item, f"{here}[{i}]")
-        elif dimension and isinstance(value, (int, float)):
-            unit = _SI[dimension]
-            said = _WORDS[dimension](value) if dimension in _WORDS else ""
-            words = f"   ({said})" if said and said != f"{value:.6g} {unit}" else ""
-            lines.append(f"{here} = {value:.12g} {unit}{words}")
-        elif value is not None:
-            unit = f" {_SI[dimension]}" if dimension and not isinstance(value, str) else ""
-            lines.append(f"{here} = {value!r}{unit}" if isinstance(value, str) else f"{here} = {value}{unit}")
 
-    walk(scene, "")
-    return lines
+def _value_lines(value: object, dimension: str | None, here: str) -> Iterator[str]:
+    if isinstance(value, BaseModel):
+        yield from _section_lines(value, here)
+    elif isinstance(value, list) and value and isinstance(value[0], BaseModel):
+        for i, item in enumerate(value):
+            yield from _section_lines(item, f"{here}[{i}]")
+    elif dimension and isinstance(value, (int, float)):
+        unit = _SI[dimension]
+        said = _WORDS[dimension](value) if dimension in _WORDS else ""
+        words = f"   ({said})" if said and said != f"{value:.6g} {unit}" else ""
+        yield f"{here} = {value:.12g} {unit}{words}"
+    elif value is not None:
+        unit = f" {_SI[dimension]}" if dimension and not isinstance(value, str) else ""
+        yield f"{here} = {value!r}{unit}" if isinstance(value, str) else f"{here} = {value}{unit}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -15,8 +15,8 @@ from sailviz.scene.values import (
     Section,
     Time,
     VelocityVector,
-    _one_of,
-    _wrong,
+    one_of,
+    wrong,
 )
 
 
@@ -40,9 +40,9 @@ class ElementsStart(Section):
     true_anomaly: Angle = 0.0
 
     @model_validator(mode="after")
-    def _conic(self):
+    def _conic(self) -> Self:
         if (self.eccentricity < 1) != (self.semi_major_axis > 0) or self.eccentricity == 1:
-            raise _wrong("an ellipse has eccentricity < 1 and semi-major axis > 0, a hyperbola > 1 and < 0")
+            raise wrong("an ellipse has eccentricity < 1 and semi-major axis > 0, a hyperbola > 1 and < 0")
         return self
 
 
@@ -60,10 +60,10 @@ class CircularStart(Section):
     argument_of_latitude: Angle = 0.0
 
     @model_validator(mode="after")
-    def _size(self):
-        _one_of(self, "radius", "altitude", "mean_altitude")
+    def _size(self) -> Self:
+        one_of(self, "radius", "altitude", "mean_altitude")
         if self.raan is not None and self.ltan is not None:
-            raise _wrong("needs raan or ltan, the local time of the ascending node, has both")
+            raise wrong("needs raan or ltan, the local time of the ascending node, has both")
         return self
 
 
@@ -114,8 +114,8 @@ class PlanetFollowingStart(DesignedStart):
     true_anomaly: Angle = 0.0
 
     @model_validator(mode="after")
-    def _which(self):
-        _one_of(self, "planet", "semi_major_axis+eccentricity")
+    def _which(self) -> Self:
+        one_of(self, "planet", "semi_major_axis+eccentricity")
         return self
 
 
@@ -150,4 +150,3 @@ Start = Annotated[
     | SpiralStart,
     Field(discriminator="kind"),
 ]
-HELD_STARTS = ("displaced", "heliostationary", "lagrange-point", "planet-following", "flat-ellipse")

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from sailviz.scene.values import HALF_TURN, POSITIVE, Angle, Angles, Length, Section, Three, Time, Times, _wrong
+from sailviz.scene.values import HALF_TURN, POSITIVE, Angle, Angles, Length, Section, Three, Time, Times, wrong
 
 
 class PlainSteering(Section):
@@ -40,9 +40,9 @@ class InertialSteering(Section):
     direction: Annotated[list[float], Three]
 
     @model_validator(mode="after")
-    def _nonzero(self):
+    def _nonzero(self) -> Self:
         if not any(self.direction):
-            raise _wrong("direction must not be the zero vector")
+            raise wrong("direction must not be the zero vector")
         return self
 
 
@@ -58,11 +58,11 @@ class TableSteering(Section):
     throttle: list[Annotated[float, Field(ge=0)]] | None = None
 
     @model_validator(mode="after")
-    def _columns(self):
+    def _columns(self) -> Self:
         if len({len(c) for c in (self.time, self.pitch, self.clock, self.throttle) if c is not None}) > 1:
-            raise _wrong("time, pitch, clock and throttle must have the same length")
+            raise wrong("time, pitch, clock and throttle must have the same length")
         if any(b <= a for a, b in zip(self.time, self.time[1:], strict=False)):
-            raise _wrong("time must increase")
+            raise wrong("time must increase")
         return self
 
 
@@ -87,11 +87,11 @@ class OptimalSteering(PrimerSteering):
     costates: Annotated[list[float], Field(min_length=3, max_length=6)]
 
     @model_validator(mode="after")
-    def _count(self):
+    def _count(self) -> Self:
         if len(self.costates) not in (3, 6):
-            raise _wrong("costates are three numbers of a planar flight or six of any other")
+            raise wrong("costates are three numbers of a planar flight or six of any other")
         if not any(self.costates[-len(self.costates) // 2 :]):
-            raise _wrong("the costates of velocity are all zero: they point the thrust")
+            raise wrong("the costates of velocity are all zero: they point the thrust")
         return self
 
 
@@ -107,9 +107,9 @@ class SmoothedSteering(Section):
     width: Annotated[float, Field(gt=0, le=1)] = 0.05
 
     @model_validator(mode="after")
-    def _nonzero(self):
+    def _nonzero(self) -> Self:
         if not any(self.costates[1:]):
-            raise _wrong("the costates of velocity are all zero: they point the thrust")
+            raise wrong("the costates of velocity are all zero: they point the thrust")
         return self
 
     @property
@@ -151,4 +151,3 @@ Steering = Annotated[
     | LyapunovSteering,
     Field(discriminator="kind"),
 ]
-PRIMER_LAWS = ("optimal", "locally-optimal", "lyapunov")

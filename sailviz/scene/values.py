@@ -43,13 +43,14 @@ class Section(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
 
 
-def _wrong(message: str, **context) -> PydanticCustomError:
-    return PydanticCustomError("scene", message, context or None)
+def wrong(message: str) -> PydanticCustomError:
+    """An error of a validator that comes to the person as this sentence."""
+    return PydanticCustomError("scene", message)
 
 
-def _one_of(section: Section, *names: str) -> None:
+def one_of(section: Section, *names: str) -> None:
     """Exactly one of several fields (or groups joined by '+') must be given."""
     given = [name for name in names if all(getattr(section, part) is not None for part in name.split("+"))]
     if len(given) != 1:
         words = " or ".join(name.replace("+", " with ") for name in names)
-        raise _wrong(f"needs exactly one of {words}" + (f", has {' and '.join(given)}" if given else ""))
+        raise wrong(f"needs exactly one of {words}" + (f", has {' and '.join(given)}" if given else ""))

@@ -16,7 +16,7 @@ from sailviz.propagate import dop853
 from sailviz.propagate import parameters as row
 from sailviz.propagate.choice import GAUSS_JACKSON
 from sailviz.run.arrays import Craft, Reference, Setting, Shell
-from sailviz.scene.start import HELD_STARTS
+from sailviz.scene.start import DesignedStart
 from sailviz.simulation.bodies import epoch_of, third_body
 from sailviz.simulation.device import sail_strength
 from sailviz.simulation.parameters_in_words import parameters_in_words
@@ -75,7 +75,7 @@ def _family(scene) -> str:
         return "deorbit"
     if scene.environment.solar_wind.kind != "steady" or scene.ensemble or scene.chaos:
         return "wind"
-    return "displaced" if scene.start.kind in HELD_STARTS else "spirals"
+    return "displaced" if isinstance(scene.start, DesignedStart) else "spirals"
 
 
 def _craft(scene) -> Craft:

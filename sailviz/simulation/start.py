@@ -13,7 +13,7 @@ from sailviz.design import spirals
 from sailviz.design.displaced import orbits as displaced
 from sailviz.environment.sun import sun_parameters
 from sailviz.errors import Fault, SceneError
-from sailviz.scene.start import HELD_STARTS
+from sailviz.scene.start import DesignedStart
 
 if TYPE_CHECKING:
     pass
@@ -24,7 +24,7 @@ from sailviz.simulation.device import film_of, sail_strength
 def _design(scene):
     """The closed form behind a start "on the designed orbit"; SceneError where it does not exist."""
     start = scene.start
-    if start.kind in HELD_STARTS:
+    if isinstance(start, DesignedStart):
         device = "electric-sail" if scene.device.kind == "electric-sail" else film_of(scene)
         third = scene.environment.third_body
         if start.kind == "displaced":
@@ -82,7 +82,7 @@ def _track(scene, device):
 
 def _initial_state(scene, body, design):
     start = scene.start
-    if start.kind in HELD_STARTS:
+    if isinstance(start, DesignedStart):
         if start.kind == "displaced":
             position, velocity = displaced.state(start.radius, start.elevation, start.rate_ratio, start.azimuth)
         elif start.kind == "heliostationary":

@@ -24,10 +24,11 @@ import sailviz
 from sailviz.errors import Fault, SceneError
 from sailviz.scene.conflicts import conflicts
 from sailviz.scene.faults import faults_of, locate
-from sailviz.scene.loading import Scene, _find, _same_quantity, load_scene
+from sailviz.scene.loading import Scene, find_scene, load_scene
+from sailviz.scene.overrides import same_quantity
 from sailviz.scene.sections import Expectation
 from sailviz.scene.units_in_keys import convert
-from sailviz.scene.values import Section, _one_of
+from sailviz.scene.values import Section, one_of
 from sailviz.shipped import shipped_sweeps
 from sailviz.sweeps.distributions import Axis, Draw, axis, drawn, flight_seed, varied
 from sailviz.units import UNITS
@@ -60,7 +61,7 @@ class VarySection(Section):
 
     @model_validator(mode="after")
     def _one(self):
-        _one_of(self, "values", "range", "distribution")
+        one_of(self, "values", "range", "distribution")
         return self
 
 
@@ -246,7 +247,7 @@ def _sweep_file(name) -> Path | None:
         if Path(name).is_file():
             path = Path(name)
         elif path is None:
-            path, _ = _find(name)
+            path, _ = find_scene(name)
     except OSError:
         return None
     except SceneError:
@@ -266,11 +267,12 @@ def _sweep_file(name) -> Path | None:
 def _read(path: Path) -> tuple[SweepFile | None, list, list[Fault], str]:
     """(file, [(axis or draw, its place)], faults, text)."""
     text = path.read_text(encoding="utf-8-sig")
-    converted, faults, written = convert(SweepFile, tomllib.loads(text))
+    fields, converted = convert(SweepFile, tomllib.loads(text))
+    faults = converted.faults
     try:
-        file = SweepFile.model_validate(converted)
+        file = SweepFile.model_validate(fields)
     except ValidationError as error:
-        return None, [], faults + faults_of(error, written, SweepFile), text
+        return None, [], faults + faults_of(error, converted, SweepFile), text
     items = []
     for i, section in enumerate(file.vary):
         where = f"vary[{i}]"
@@ -314,7 +316,7 @@ def _disagreements(items, axes, random, draws, together, place, earlier) -> list
     for i, item in enumerate(items):
         table, _, last = item.key.rpartition(".")
         before = {other.key.rpartition(".")[2] for other in items[:i] if other.key.rpartition(".")[0] == table}
-        if last in before or _same_quantity(last, dict.fromkeys(before)):
+        if last in before or same_quantity(last, dict.fromkeys(before)):
             found.append(Fault(place[item.key], f"{item.key}: this quantity varies already."))
     if together and len({len(item.values) for item in axes}) > 1:
         counts = ", ".join(f"{item.key} has {len(item.values)}" for item in axes)

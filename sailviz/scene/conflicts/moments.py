@@ -1,0 +1,92 @@
+"""Whether duration, dates, windows, events and expectations of a scene lie where a run can meet them."""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from typing import TYPE_CHECKING
+
+from sailviz.constants import YEAR
+from sailviz.scene.conflicts.answers import Faults
+from sailviz.scene.conflicts.craft import has_surface
+from sailviz.scene.conflicts.ensembles import placed_ensembles
+from sailviz.scene.quantities import MEANS, PLACES, spellings
+from sailviz.scene.sections import STATISTICS_OF_ROWS
+from sailviz.words import nearest
+
+if TYPE_CHECKING:
+    from sailviz.scene.loading import Scene
+
+LONGEST = 2**63 / 1e9  # s, what 64 bits of nanoseconds reach
+COME_WITH_DEVICES = {"impact", "thrust on", "thrust off", "brake off"}  # events that nobody asks for
+OVER_THE_SURFACE = ("altitude", "mean-altitude")  # kinds of events
+
+
+def ephemeris(scene: Scene) -> Faults:
+    """DE421 is there, and reaches over the run."""
+    if scene.ephemeris != "de421" or scene.epoch is None:
+        return []
+    found = []
+    if not 1900 <= scene.epoch.year <= 2053 - scene.propagation.duration / YEAR:
+        found.append(("ephemeris", "DE421 reaches from 1899 to 2053"))
+    if find_spec("skyfield_data") is None or find_spec("jplephem") is None:
+        found.append(("ephemeris", 'DE421 needs the extra "ephemeris": pip install "sailviz[ephemeris]"'))
+    return found
+
+
+def epoch(scene: Scene) -> Faults:
+    """A recording's clock reaches over the run's dates."""
+    if scene.epoch is None or 1700 <= scene.epoch.year <= 2262 - scene.propagation.duration / YEAR:
+        return []
+    return [("epoch", "the run must lie between the years 1700 and 2262, what 64 bits of nanoseconds reach")]
+
+
+def duration(scene: Scene) -> Faults:
+    """A recording's clock reaches over the run, which reaches over its windows."""
+    found, whole = [], scene.propagation.duration
+    if whole > LONGEST:
+        words = (
+            "a recording's clock reaches 292 years of nanoseconds; lifetimes beyond are sailviz.design.decay's business"
+        )
+        found.append(("propagation.duration", words))
+    for i, window in enumerate(scene.propagation.dense):
+        if window.end > whole:
+            found.append((f"propagation.dense[{i}].end", "the window reaches beyond the run"))
+    return found
+
+
+def events(scene: Scene) -> Faults:
+    """An altitude is counted from something."""
+    if has_surface(scene):
+        return []
+    words = "the body has no radius to measure an altitude from"
+    return [(f"event[{i}].altitude", words) for i, item in enumerate(scene.event) if item.kind in OVER_THE_SURFACE]
+
+
+def expected_of_ensembles(scene: Scene) -> Faults:
+    """Statistics are those of the ends of an ensemble that is there."""
+    found, known = [], list(dict.fromkeys(item.name for _, item in placed_ensembles(scene)))
+    for i, expected in enumerate(scene.expect):
+        if expected.ensemble is None:
+            continue
+        if expected.ensemble not in known:
+            words = f'no such ensemble "{expected.ensemble}". {nearest(expected.ensemble, known)}'
+            found.append((f"expect[{i}].ensemble", words))
+        elif expected.at != "end":
+            found.append((f"expect[{i}].at", 'statistics of an ensemble are those of its ends: at = "end"'))
+        stem = spellings()[expected.quantity].stem
+        if stem not in PLACES and (stem not in MEANS or expected.statistic != "mean"):
+            words = f"of an ensemble are known: {', '.join(PLACES)}; and the mean of {', '.join(MEANS)}"
+            found.append((f"expect[{i}].quantity", words))
+    return found
+
+
+def expected_moments(scene: Scene) -> Faults:
+    """Expectations are of moments that the run can meet."""
+    found, happens = [], {item.name or item.kind for item in scene.event} | COME_WITH_DEVICES
+    words = [*STATISTICS_OF_ROWS, *sorted(happens)]
+    for i, expected in enumerate(scene.expect):
+        if expected.at is not None and expected.at not in words:
+            found.append((f"expect[{i}].at", f'no such moment "{expected.at}". {nearest(expected.at, words)}'))
+        if expected.at_time is not None and not 0 <= expected.at_time <= scene.propagation.duration:
+            found.append((f"expect[{i}].at_time", "outside the run"))
+    return found

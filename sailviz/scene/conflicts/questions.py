@@ -1,0 +1,47 @@
+"""Every question that is asked of a scene whose sections fit their own tables, in the order of its answers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sailviz.scene.conflicts import craft, low_orbit, moments
+from sailviz.scene.conflicts.answers import Faults
+from sailviz.scene.conflicts.approximations import approximations
+from sailviz.scene.conflicts.ensembles import ensembles
+
+if TYPE_CHECKING:
+    from sailviz.scene.loading import Scene
+
+QUESTIONS = (
+    craft.central_body,
+    craft.direction_of_thrust,
+    craft.planar_costates,
+    craft.designed_orbit,
+    craft.round_the_sun,
+    craft.what_the_start_asks,
+    moments.ephemeris,
+    craft.what_the_transfer_asks,
+    approximations,
+    ensembles,
+    moments.expected_of_ensembles,
+    craft.surface_of_the_body,
+    craft.varying_drive,
+    moments.epoch,
+    low_orbit.known_of_the_earth,
+    low_orbit.tether,
+    low_orbit.density_of_plasma,
+    low_orbit.drag,
+    low_orbit.solar_flux,
+    low_orbit.date_and_sun,
+    low_orbit.start_round_the_earth,
+    low_orbit.room_for_the_tether,
+    moments.duration,
+    craft.steepest_pitch,
+    moments.events,
+    moments.expected_moments,
+)
+
+
+def conflicts(scene: Scene) -> Faults:
+    """(place, sentence) of everything that fits its own section but not the others."""
+    return [fault for question in QUESTIONS for fault in question(scene)]

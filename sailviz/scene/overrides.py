@@ -1,0 +1,55 @@
+"""Values put over those of a scene file by their dotted keys, as `--set` and a sweep do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from sailviz.errors import Fault, SceneError
+from sailviz.units import UNITS
+
+
+def overridden(raw: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
+    """A deep copy of a scene's tables with dotted keys replaced. SceneError for a key that no place can have."""
+    result: dict[str, Any] = _copy(raw)
+    for key, value in values.items():
+        *path, last = key.split(".")
+        table: Any = result
+        for part in path:
+            table = _inner(table, part)
+        if not isinstance(table, dict):
+            raise SceneError([Fault(key, "no such place in the scene")], "--set")
+        for sibling in same_quantity(last, table):
+            del table[sibling]
+        table[last] = _copy(value)
+    return result
+
+
+def _inner(table: Any, part: str) -> Any:
+    """The table or list under a name or a number, made if it is not there; None where there can be none."""
+    if isinstance(table, list):
+        return table[int(part)] if part.isdecimal() and len(part) < 9 and int(part) < len(table) else None
+    if not isinstance(table, dict):
+        return None
+    if not isinstance(table.get(part), (dict, list)):
+        table[part] = {}
+    return table[part]
+
+
+def _copy(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _copy(item) for key, item in value.items()}
+    return [_copy(item) for item in value] if isinstance(value, list) else value
+
+
+def same_quantity(key: str, table: Iterable[str]) -> list[str]:
+    """Keys of a table that say the same quantity in another unit."""
+    for units in UNITS.values():
+        for unit in units:
+            if unit and key.endswith(f"_{unit}"):
+                stem = key.removesuffix(f"_{unit}")
+                twins = {stem, *(f"{stem}_{other}" for other in units)}
+                found = [name for name in table if name in twins and name != key]
+                if found:
+                    return found
+    return []

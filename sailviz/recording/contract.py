@@ -80,42 +80,48 @@ def tables(run: Run) -> dict[str, dict[str, np.ndarray]]:
 ENDS = 10_000  # flights whose ends are recorded
 
 
-def cloud_path(cloud: EnsembleStatistics) -> str:
-    return f"/ensemble/{word(cloud.name)}"
+def ensemble_path(ensemble: EnsembleStatistics) -> str:
+    return f"/ensemble/{word(ensemble.name)}"
 
 
-def cloud_table(cloud: EnsembleStatistics) -> dict[str, np.ndarray]:
+def ensemble_table(ensemble: EnsembleStatistics) -> dict[str, np.ndarray]:
     """The columns of /ensemble/NAME, (n,) or (n, k)."""
-    length = np.ones((len(cloud.time), 3))
-    length[:, 1] = cloud.mean[:, 0]  # azimuth becomes a way along the orbit
-    along = cloud.covariance[:, :3, :3] * length[:, :, None] * length[:, None, :]
-    places = cloud.places(cloud.kept)
+    length = np.ones((len(ensemble.time), 3))
+    length[:, 1] = ensemble.mean[:, 0]  # azimuth becomes a way along the orbit
+    along = ensemble.covariance[:, :3, :3] * length[:, :, None] * length[:, None, :]
+    places = ensemble.places(ensemble.kept)
     return {
-        "time_s": cloud.time,
-        "nominal_position_m": cloud.places(cloud.nominal),
-        "mean_position_m": cloud.places(cloud.mean),
+        "time_s": ensemble.time,
+        "nominal_position_m": ensemble.places(ensemble.nominal),
+        "mean_position_m": ensemble.places(ensemble.mean),
         "covariance_m2": along.reshape(-1, 9),
-        **{name: values.T for name, values in cloud.percentiles.items()},
-        **{f"one_{name}": values for name, values in cloud.one.items()},
-        "saturated": cloud.saturated,
-        "histogram": cloud.histogram,
-        "kept_position_m": places.transpose(1, 0, 2).reshape(len(cloud.time), -1),
+        **{name: values.T for name, values in ensemble.percentiles.items()},
+        **{f"one_{name}": values for name, values in ensemble.one.items()},
+        "saturated": ensemble.saturated,
+        "histogram": ensemble.histogram,
+        "kept_position_m": places.transpose(1, 0, 2).reshape(len(ensemble.time), -1),
     }
 
 
-def cloud_facts(cloud: EnsembleStatistics) -> rr.DynamicArchetype:
+def ensemble_facts(ensemble: EnsembleStatistics) -> rr.DynamicArchetype:
     """The static entity /ensemble/NAME/facts."""
     names = ("radius_m", "azimuth_rad", "height_m", "radial_speed_m_s", "transverse_speed_m_s", "axis_speed_m_s")
-    ends = cloud.end[:ENDS]
+    ends = ensemble.end[:ENDS]
     values = {
-        **{name: [getattr(cloud, name)] for name in ("name", "words", "wind", "method", "control", "flights", "seed")},
-        **{name: [float(getattr(cloud, name))] for name in ("mean_factor", "mean_voltage", "mean_saturated", "error")},
-        **{name: [value] for name, value in cloud.limits.items()},
-        "tail": [float(cloud.tail)],
-        "levels": cloud.levels,
-        "histogram_edges_m": cloud.histogram_edges,
+        **{
+            name: [getattr(ensemble, name)]
+            for name in ("name", "words", "wind", "method", "control", "flights", "seed")
+        },
+        **{
+            name: [float(getattr(ensemble, name))]
+            for name in ("mean_factor", "mean_voltage", "mean_saturated", "error")
+        },
+        **{name: [value] for name, value in ensemble.limits.items()},
+        "tail": [float(ensemble.tail)],
+        "levels": ensemble.levels,
+        "histogram_edges_m": ensemble.histogram_edges,
         **{f"end_{name}": ends[:, k] for k, name in enumerate(names)},
-        **{f"nominal_end_{name}": cloud.nominal[-1:, k] for k, name in enumerate(names)},
+        **{f"nominal_end_{name}": ensemble.nominal[-1:, k] for k, name in enumerate(names)},
     }
     return rr.DynamicArchetype(archetype("/ensemble"), components={name: pa.array(v) for name, v in values.items()})
 

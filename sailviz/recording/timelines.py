@@ -88,7 +88,7 @@ def check_duration(run: Run) -> None:
         )
 
 
-def timelines(run_setting, number, time) -> list[rr.TimeColumn]:
+def time_columns(run_setting, number, time) -> list[rr.TimeColumn]:
     """The columns step, sim_time and, where the scene has an epoch, utc. number (n,) int, time (n,) s."""
     ns = np.round(np.asarray(time, float) * 1e9).astype(np.int64).astype("timedelta64[ns]")
     columns = [rr.TimeColumn("step", sequence=np.asarray(number, np.int64)), rr.TimeColumn("sim_time", duration=ns)]

@@ -17,8 +17,7 @@ import rerun as rr
 from rerun.error_utils import catch_and_log_exceptions
 
 from sailviz.errors import PropagationError, RecordingError
-from sailviz.recording import contract as truth
-from sailviz.recording import timelines as rows
+from sailviz.recording import contract, timelines
 from sailviz.recording.drawing.drawing import Drawing
 from sailviz.recording.sinks import File, Memory, Web, attach, discard, resolve, web_address
 from sailviz.run.arrays import Event, Run
@@ -115,11 +114,11 @@ class Recorder:
             raise RecordingError(
                 f"the blocks of a run must follow each other: row {self._rows} was due, row {run.first} came"
             )
-        rows.check_duration(run)
+        timelines.check_duration(run)
         started = clock.perf_counter()
         with _not_interrupted(), catch_and_log_exceptions("recording", strict=True):
             for start in range(0, len(run), BLOCK):
-                piece = rows.take(run, slice(start, start + BLOCK))
+                piece = timelines.take(run, slice(start, start + BLOCK))
                 self._add(replace(piece, first=run.first + start, events=run.events if start == 0 else ()))
         self._seconds += clock.perf_counter() - started
 
@@ -154,16 +153,16 @@ class Recorder:
     def _add(self, block: Run) -> None:
         if self._stream is None:
             self._open(block)
-        index = rows.timelines(self._setting, self._rows + np.arange(len(block)), block.time)
-        for entity, table in truth.tables(block).items():
+        index = timelines.time_columns(self._setting, self._rows + np.arange(len(block)), block.time)
+        for entity, table in contract.tables(block).items():
             if table:
-                self._stream.send_columns(entity, index, truth.columns(entity, table))
+                self._stream.send_columns(entity, index, contract.columns(entity, table))
         self._add_events(block)
         self._drawing.add(block)
         first = self._last is None
         self._rows += len(block)
         self._ended = block.ended
-        self._last = replace(rows.take(block, slice(-1, None)), first=self._rows - 1, events=())
+        self._last = replace(timelines.take(block, slice(-1, None)), first=self._rows - 1, events=())
         if first:
             self._write_scene(complete=False)  # so that a recording cut off by a crash still says what it was
         self._flush()
@@ -184,7 +183,7 @@ class Recorder:
         self._attached = attach(stream, self._sinks)
         self._stream = stream
         stream.send_recording_name(setting.title)
-        self._drawing = Drawing(stream, setting)
+        self._drawing = Drawing(stream, block)
 
     def _add_events(self, block: Run) -> None:
         """Write the events that have a row at or after them by now; keep the others."""
@@ -197,8 +196,8 @@ class Recorder:
     def _write_events(self, events: list[Event], number) -> None:
         if not events:
             return
-        index = rows.timelines(self._setting, number, [event.time for event in events])
-        self._stream.send_columns("/events", index, truth.event_columns(events))
+        index = timelines.time_columns(self._setting, number, [event.time for event in events])
+        self._stream.send_columns("/events", index, contract.event_columns(events))
         self._drawing.add_events(events, index)
 
     def _event_now(self, name: str) -> Event:
@@ -206,7 +205,7 @@ class Recorder:
         return Event(name, float(last.time[0]), np.concatenate([last.position[0], last.velocity[0], last.mass]))
 
     def _write_scene(self, complete: bool) -> None:
-        scene = truth.scene(self._setting, rows=self._rows, complete=complete, ended=self._ended)
+        scene = contract.scene(self._setting, rows=self._rows, complete=complete, ended=self._ended)
         self._stream.log("/scene", scene, static=True)
 
     def _why(self, error: BaseException) -> str:

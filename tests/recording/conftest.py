@@ -10,11 +10,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from sailviz.constants import ROTATION_EARTH
 from sailviz.elements import elements, state
 from sailviz.frames import body_axes, from_frame, pitch_cone_clock, quaternion, rtn, to_frame, unit
 from sailviz.recording import record
 from sailviz.recording.timelines import take
-from sailviz.run.arrays import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust
+from sailviz.run.arrays import Attitude, Body, Craft, Event, Reference, Run, Setting, Shell, Thrust
 
 AU = 149_597_870_700.0
 MU_SUN = 1.327_124_400_18e20
@@ -22,6 +23,7 @@ MU_EARTH = 3.986_004_415e14
 RADIUS_EARTH = 6_378_137.0
 DAY = 86_400.0
 YEAR = 365.25 * DAY
+GREENWICH = 1.2  # rad, direction of longitude 0 at the start
 PLANETS = {"Venus": 0.723, "Earth": 1.0}
 
 
@@ -227,6 +229,43 @@ def in_blocks(run, size):
     return blocks
 
 
+def with_everything(run):
+    """The run with every column that an environment may fill, of the right size and sign but made up."""
+    height = np.linalg.norm(run.position, axis=1) - RADIUS_EARTH
+    sun = unit(run.bodies["Sun"])
+    ahead = np.sum(run.position * sun, 1)
+    density = 1e11 * np.exp((500e3 - height) / 150e3)
+    normal = unit(np.cross(run.position[0], run.velocity[0]))
+    angle, altitude = np.linspace(0, 2 * np.pi, 48, endpoint=False), np.linspace(100e3, 1000e3, 31)
+    value = 1e9 + 1e12 * np.exp(-(((altitude - 350e3) / 150e3) ** 2)) * (1.1 + np.cos(angle))[:, None]
+    noon = unit(sun[0] - sun[0] @ normal * normal)
+    environment = {
+        "sunlit": (ahead > 0) | (np.linalg.norm(run.position - ahead[:, None] * sun, axis=1) > RADIUS_EARTH),
+        "plasma_force_N_m": 3e-19 * density,
+        "plasma_density_per_m3": density,
+        "mean_ion_mass_u": 16 - 6 * height / 1e6,
+        "tether_current_A": 1e-14 * density,
+        "tether_voltage_V": np.full(len(run), -1000.0),
+        "tether_power_W": 1e-11 * density,
+        "tether_tilt_rad": 1e-13 * density,
+        "air_density_kg_m3": 1e-12 * np.exp((400e3 - height) / 60e3),
+        "air_drag_N": 1e-6 * np.exp((400e3 - height) / 60e3),
+        "solar_flux_sfu": 140 + 40 * np.sin(run.time / 1e7),
+        "force_law_valid": height < 690e3,
+        "quasi_circular_altitude_m": run.elements.semi_major_axis - RADIUS_EARTH + 2e3,
+        "earth_rotation_rad": np.mod(GREENWICH + ROTATION_EARTH * run.time, 2 * np.pi),
+        "primer_direction": unit(run.velocity),
+    }
+    shells = (Shell("plasma density", "1/m³", normal, noon, angle, altitude, value),)
+    return replace(run, environment=environment, setting=replace(run.setting, shells=shells))
+
+
+def uneven(days=1095.0, far=1000, close=1000, pace=60.0):
+    """Times of rows that are far apart but in one dense window."""
+    window = 0.4 * days * DAY + pace * np.arange(close)
+    return np.unique(np.concatenate([np.linspace(0, days * DAY, far), window]))
+
+
 FAMILIES = {"displaced": displaced_run, "spirals": spiral_run, "deorbit": descent_run}
 
 
@@ -253,3 +292,18 @@ def recorded_family(request, tmp_path_factory):
     path = tmp_path_factory.mktemp("families") / f"{request.param}.rrd"
     record(FAMILIES[request.param](rows=200), path)
     return request.param, path
+
+
+@pytest.fixture(scope="session")
+def low_orbit():
+    """Runs over days to years in a low orbit: everything that an environment may hold, and rows uneven in time."""
+    return SimpleNamespace(with_everything=with_everything, uneven=uneven, RADIUS=RADIUS_EARTH, GREENWICH=GREENWICH)
+
+
+@pytest.fixture(scope="session")
+def years(tmp_path_factory):
+    """A descent of three years with a dense window, and its recording."""
+    run = with_everything(descent_run(time=uneven(), high=800e3, low=250e3))
+    path = tmp_path_factory.mktemp("years") / "years.rrd"
+    record(run, path)
+    return run, path

@@ -77,12 +77,12 @@ def evidence(source, label: str = "") -> Evidence:
 
 
 def of_run(run: Run, label: str) -> Evidence:
-    from sailviz.recording.contract import cloud_path, cloud_table, tables
+    from sailviz.recording.contract import ensemble_path, ensemble_table, tables
 
     steps = run.first + np.arange(len(run))
     found = {entity: Table(steps, run.time, table) for entity, table in tables(run).items() if table}
-    for cloud in run.setting.ensembles:
-        found[cloud_path(cloud)] = Table(cloud.step, cloud.time, cloud_table(cloud))
+    for ensemble in run.setting.ensembles:
+        found[ensemble_path(ensemble)] = Table(ensemble.step, ensemble.time, ensemble_table(ensemble))
     events = sorted(run.events, key=lambda event: event.time)
     rows = np.minimum(np.searchsorted(run.time, [event.time for event in events], side="left"), len(run) - 1)
     setting = run.setting
@@ -139,8 +139,8 @@ def of_recording(recording: Recording, label: str) -> Evidence:
 
 def truth_of(recording: Recording) -> list[str]:
     """The entities of the contract that have rows: those of the run, then those of its ensembles."""
-    clouds = [name for name in recording.entities if name.startswith("/ensemble/") and name.count("/") == 2]
-    return [entity for entity in TRUTH if entity in recording] + clouds
+    ensembles = [name for name in recording.entities if name.startswith("/ensemble/") and name.count("/") == 2]
+    return [entity for entity in TRUTH if entity in recording] + ensembles
 
 
 def of_npz(path: Path, label: str) -> Evidence:

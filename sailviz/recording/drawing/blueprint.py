@@ -7,8 +7,9 @@ import rerun.blueprint as rrb
 from rerun.blueprint.archetypes import PlotBackground, TextLogColumns
 from rerun.blueprint.encodings import TextLogColumn, TextLogColumnKind, TimelineColumn
 
-from sailviz.recording.drawing.ensembles import BOX, Arrival
-from sailviz.recording.drawing.layout import DESCENT, TUBE, Camera, Layout
+from sailviz.recording.drawing.arrival_plane import BOX, Arrival
+from sailviz.recording.drawing.cameras import Camera
+from sailviz.recording.drawing.layout import DESCENT, TUBE, Layout
 from sailviz.recording.drawing.plot_column import PlotView
 from sailviz.recording.drawing.style import BACKGROUND
 
@@ -79,7 +80,7 @@ def space_view(layout: Layout, camera: Camera) -> rrb.Spatial3DView:
     if layout.arrivals:
         contents += ["- /world/cloud/**"]
         kinds = ("tube",) if camera.name == TUBE else ("flights", "now", "ellipse")
-        contents += [f"+ /world/cloud/{name}/{kind}/**" for name in layout.clouds for kind in kinds]
+        contents += [f"+ /world/cloud/{name}/{kind}/**" for name in layout.ensembles for kind in kinds]
     if camera.name == DESCENT:
         contents = [f"+ /world/{name}/**" for name in ("stars", "plane", "center", "night")]
         contents += ["- /world/night/umbra", "- /world/night/sunlight/**"]
@@ -135,7 +136,7 @@ def trail_ranges(layout: Layout) -> dict:
         "/world/plane/rungs": time_range(layout, None, None),
         "/world/nominal/path": time_range(layout, None, 0.0),
     }
-    ranges |= {f"/world/cloud/{name}/flights": time_range(layout, None, 0.0) for name in layout.clouds}
+    ranges |= {f"/world/cloud/{name}/flights": time_range(layout, None, 0.0) for name in layout.ensembles}
     if layout.future:
         ranges["/world/trail/future"] = time_range(layout, 0.0, None)
     else:

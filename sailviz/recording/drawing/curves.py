@@ -8,8 +8,10 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from sailviz.recording import timelines as rows
-from sailviz.recording.drawing import style as look
+from sailviz.recording import timelines
+from sailviz.recording.drawing import style
+from sailviz.recording.drawing.craft import CraftDrawing
+from sailviz.recording.drawing.log import Color, Picture
 from sailviz.recording.drawing.plots import plots_of
 from sailviz.recording.drawing.samples import Frame
 from sailviz.run.arrays import Run
@@ -22,11 +24,11 @@ UNKNOWN = 0.25  # revolutions between rows over which light and shadow come and 
 class Curves:
     """Writes the plots of a run and remembers how far they reach."""
 
-    def __init__(self, pen, first: Run, frame: Frame):
-        self._pen = pen
+    def __init__(self, picture: Picture, first: Run, frame: Frame, craft: CraftDrawing):
+        self._picture = picture
         most = FAR_ROWS if frame.sparse else PLOT_ROWS
-        self._picker = rows.Picker(first.setting.rows, most, first.setting.duration)
-        self.plots = plots_of(first, frame)
+        self._picker = timelines.Picker(first.setting.rows, most, first.setting.duration)
+        self.plots = plots_of(first, frame, craft)
         self.ranges: dict[str, tuple[float, float]] = {}
         self._lanes = {"thrust": lambda run: run.thrust.on} | {
             name: (lambda run, name=name: run.environment[name])
@@ -38,38 +40,38 @@ class Curves:
         self._far = np.inf if frame.sun else UNKNOWN * frame.period
         self.changes = dict.fromkeys(self._lanes, 0)
         dense = frame.turns > 60
-        width = look.WIDTH["dense plot" if dense else "plot"]
+        width = style.WIDTH["dense plot" if dense else "plot"]
         for plot in self.plots:
             # the later curve lies on top: thinner, so that an equal one below it still shows
             widths = [width * (1.6 if k < len(plot.names) - 1 else 1.0) for k in range(len(plot.names))]
-            style = rr.SeriesLines(
+            lines = rr.SeriesLines(
                 names=list(plot.names),
                 colors=[list(color) for color in plot.colors],
                 widths=widths,
                 aggregation_policy=rr.components.AggregationPolicy.MinMax,  # the mean would hide an oscillation
             )
-            pen.static(plot.path, style)
+            picture.log_static(plot.path, lines)
         for lane in self._lanes:
-            on, off = lane_style(lane, first.setting.craft.kind)
-            pen.static(
+            on, off = lane_style(craft.lane if lane == "thrust" else lane)
+            picture.log_static(
                 f"/phase/{lane}",
                 rr.StateConfiguration(
                     values=["on", "off", "unknown"],
                     labels=[on[0], off[0], "between far rows"],
-                    colors=[on[1], off[1], look.UNKNOWN],
+                    colors=[on[1], off[1], style.UNKNOWN],
                 ),
             )
 
     def add(self, run: Run) -> None:
         """A block of a run, all rows."""
         drawn = self._picker.pick(run)
-        picked = rows.take(run, drawn)
-        index = rows.timelines(run.setting, run.first + drawn, picked.time)
+        picked = timelines.take(run, drawn)
+        index = timelines.time_columns(run.setting, run.first + drawn, picked.time)
         for plot in self.plots:
             self._stretch(plot.path, plot.values(run))
             if len(picked):
                 values = plot.values(picked)
-                self._pen.columns(
+                self._picture.log_columns(
                     plot.path, index, rr.Scalars.columns(scalars=np.where(np.isfinite(values), values, np.nan))
                 )
         far = np.diff(run.time, prepend=self._time) > self._far
@@ -92,8 +94,8 @@ class Curves:
         self._state[lane] = str(states[-1])
         if len(changed):
             self.changes[lane] += int(np.sum(states[changed] != "unknown")) - (before is None)
-            index = rows.timelines(run.setting, run.first + changed, run.time[changed])
-            self._pen.columns(f"/phase/{lane}", index, rr.StateChange.columns(state=states[changed].tolist()))
+            index = timelines.time_columns(run.setting, run.first + changed, run.time[changed])
+            self._picture.log_columns(f"/phase/{lane}", index, rr.StateChange.columns(state=states[changed].tolist()))
 
     def reach(self, path: str) -> tuple[float, float]:
         """Smallest and largest value that a plot has shown."""
@@ -101,10 +103,9 @@ class Curves:
         return (min(low for low, _ in pairs), max(high for _, high in pairs)) if pairs else (0.0, 1.0)
 
 
-def lane_style(lane: str, kind: str) -> tuple:
+def lane_style(lane: str) -> tuple[tuple[str, Color], tuple[str, Color]]:
     """Word and colour of a lane's two states."""
-    if lane == "thrust" and kind == "plasma-brake":
-        lane = "brake"
     words = lane.replace("_", " ")
-    other = {"on": (words, look.SERIES[0]), "off": (f"no {words}", look.REFERENCE)}
-    return tuple(look.LANES.get("light" if "sunlit" in lane else lane, other).values())
+    other = {"on": (words, style.SERIES[0]), "off": (f"no {words}", style.REFERENCE)}
+    states = style.LANES.get("light" if "sunlit" in lane else lane, other)
+    return states["on"], states["off"]

@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from sailviz.frames import unit
-from sailviz.recording import timelines as rows
+from sailviz.recording import timelines
 from sailviz.recording.contract import word
-from sailviz.recording.drawing import cameras
-from sailviz.recording.drawing import style as look
+from sailviz.recording.drawing import cameras, style
+from sailviz.recording.drawing.arrival_plane import Arrival, arrivals_of
+from sailviz.recording.drawing.cameras import Camera
+from sailviz.recording.drawing.craft import CloseUp, CraftDrawing
 from sailviz.recording.drawing.curves import Curves
-from sailviz.recording.drawing.ensembles import Arrival, arrivals_of, slots_of
+from sailviz.recording.drawing.ensemble_plots import slots_of
 from sailviz.recording.drawing.plot_column import Slot, column, plot_views
 from sailviz.recording.drawing.samples import PLANE_TURNS, Frame, Samples
 from sailviz.run.arrays import Run, Setting
@@ -20,19 +22,8 @@ from sailviz.run.arrays import Run, Setting
 PUSHES = 400  # rows at which the ends of arrows are looked at
 SEASON = 30 * 86400.0  # s of a run from which the eye over a planet goes along with the Sun
 DESCENT = "Descent (orbits in one plane, to scale)"
-TUBE = "Percentiles"  # the view of clouds as tubes
+TUBE = "Percentiles"  # the view of ensembles as tubes
 DEPARTING = 0.02  # relative change of distance below which an orbit counts as closed
-
-
-@dataclass(frozen=True)
-class Camera:
-    """Where a view looks from. `origin` is the entity whose frame position, target and up are given in."""
-
-    name: str
-    origin: str
-    position: tuple[float, ...]
-    target: tuple[float, ...] = (0.0, 0.0, 0.0)
-    up: tuple[float, ...] = (0.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -59,8 +50,8 @@ class Layout:
     timelines: tuple[str, ...]
     speed: float  # seconds of the run in one second of replay
     rows_per_second: float
-    arrivals: tuple[Arrival, ...] = ()  # planes in which clouds are seen
-    clouds: tuple[str, ...] = ()  # their names as parts of paths
+    arrivals: tuple[Arrival, ...] = ()  # planes in which ensembles are seen
+    ensembles: tuple[str, ...] = ()  # their names as parts of paths
 
 
 class Extents:
@@ -81,7 +72,7 @@ class Extents:
         if self.farthest is None:
             self._start = float(run.time[0])
         self.reached = float(run.time[-1]) - self._start
-        some = rows.on_stride(run, rows.stride(run.setting.rows, PUSHES))
+        some = timelines.on_stride(run, timelines.stride(run.setting.rows, PUSHES))
         self._pushes.append(np.hstack([run.position[some], run.thrust.acceleration[some]]))
         distance = np.linalg.norm(run.position, axis=1)
         low, high = float(distance.min()), float(distance.max())
@@ -96,7 +87,7 @@ class Extents:
         wanted = int(np.searchsorted(run.time, halfway, side="right")) - 1
         if self.middle is None or wanted >= 0:
             wanted = max(wanted, 0)
-            self.middle = replace(rows.take(run, slice(wanted, wanted + 1)), first=run.first + wanted)
+            self.middle = replace(timelines.take(run, slice(wanted, wanted + 1)), first=run.first + wanted)
 
     def tips(self, scale: float) -> np.ndarray:
         """Where arrows of thrust end, m, `scale` m long per m/s2. (k, 3)"""
@@ -104,34 +95,38 @@ class Extents:
         return pushes[:, :3] + scale * pushes[:, 3:]
 
 
-def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) -> Layout:
+def lay_out(
+    setting: Setting, frame: Frame, extents: Extents, curves: Curves, craft: CraftDrawing, close_up: CloseUp
+) -> Layout:
     """The layout of a run that reaches as far as `extents` says."""
     references = [float(np.linalg.norm(r.points, axis=1).max()) for r in setting.references if r.role != "planet"]
-    spread = [float(cloud.percentiles.get("radius_m", cloud.nominal[:, :1].T).max()) for cloud in setting.ensembles]
+    spread = [float(e.percentiles.get("radius_m", e.nominal[:, :1].T).max()) for e in setting.ensembles]
     radius = max([extents.farthest, *references, *spread]) / frame.unit
     middle = Samples.of(extents.middle, np.array([extents.middle.first]), frame)
-    sail = look.SAIL.get(setting.craft.kind, 0.1) * radius
-    sail *= look.AMONG_MANY if setting.ensembles else 1.0
+    sail = craft.size * radius
+    sail *= style.AMONG_MANY if setting.ensembles else 1.0
     tether = 0.0
     if not frame.sun and setting.body.radius > 0:
-        sail = 0.14 * radius if setting.craft.kind == "plasma-brake" else sail
+        sail = sail if craft.size_over_planet is None else craft.size_over_planet * radius
         tether = min(0.13 * radius, max(0.9 * (extents.nearest / frame.unit - 1), 0.01))
     revolution = revolution_time(extents.middle)
     turns = setting.duration / revolution
     still = extents.farthest - extents.nearest < DEPARTING * extents.farthest
     closed = bool(still and turns > 1.2 and not frame.sparse)
-    thrust_scale = look.THRUST_LENGTH * radius / extents.thrust if extents.thrust > 0 else 1.0
-    thrust_scale *= look.AMONG_MANY if setting.ensembles else 1.0
+    thrust_scale = style.THRUST_LENGTH * radius / extents.thrust if extents.thrust > 0 else 1.0
+    thrust_scale *= style.AMONG_MANY if setting.ensembles else 1.0
     if frame.sun or setting.body.radius == 0:
         tips = extents.tips(thrust_scale * frame.unit) / frame.unit
-        views = about_sun(radius, extents.lowest / frame.unit, extents.highest / frame.unit, tips, middle, setting)
+        views = about_sun(
+            radius, extents.lowest / frame.unit, extents.highest / frame.unit, tips, middle, setting, craft
+        )
         tail = min(0.12 * setting.duration, 0.15 * revolution)
     else:
         views = about_planet(radius, middle, frame, setting)
         tail = min(2.6 * revolution, 0.3 * setting.duration)
-    names = name_views(views, setting, frame, sail, tether)
+    names = name_views(views, setting, frame, craft, tether if craft.tether else sail)
     timelines = ("sim_time", "step") if setting.epoch is None else ("utc", "sim_time", "step")
-    shown, environment = plot_views(curves, frame, setting.craft.kind not in ("plasma-brake", "none"))
+    shown, environment = plot_views(curves, frame, craft.steers)
     lanes = tuple(lane for lane, changes in curves.changes.items() if changes)
     slots, lane_share = column(shown, environment, lanes)
     if setting.ensembles:
@@ -145,7 +140,7 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
         thrust_scale=thrust_scale,
         close_thrust_scale=8.0 / np.sqrt(extents.thrust) if extents.thrust > 0 else 1.0,
         cameras=names,
-        close_up=close_up_camera(setting, middle),
+        close_up=close_up.camera(middle),
         slots=slots,
         lanes=lanes,
         lane_share=lane_share,
@@ -160,7 +155,7 @@ def lay_out(setting: Setting, frame: Frame, extents: Extents, curves: Curves) ->
         / setting.play_duration,
         rows_per_second=setting.rows / setting.duration,
         arrivals=arrivals_of(setting) if setting.ensembles else (),
-        clouds=tuple(word(cloud.name) for cloud in setting.ensembles),
+        ensembles=tuple(word(ensemble.name) for ensemble in setting.ensembles),
     )
 
 
@@ -173,10 +168,10 @@ def planets(setting: Setting, extents: Extents) -> dict[str, float]:
 def hidden_entities(setting: Setting, extents: Extents, reach: float) -> tuple[str, ...]:
     """What would spoil the system view: planets far outside it, and names that would pile up in its centre."""
     far = planets(setting, extents)
-    outside = [name for name, distance in far.items() if distance > look.PLANETS_WITHIN * reach]
-    inmost = [name for name, distance in far.items() if distance < look.NAMES_FROM * reach and name != "Earth"]
+    outside = [name for name, distance in far.items() if distance > style.PLANETS_WITHIN * reach]
+    inmost = [name for name, distance in far.items() if distance < style.NAMES_FROM * reach and name != "Earth"]
     paths = [f"/world/planets/{name}" for name in outside] + [f"/world/names/{name}" for name in outside + inmost]
-    if far and min(far.values()) < 1.4 * look.NAMES_FROM * reach:
+    if far and min(far.values()) < 1.4 * style.NAMES_FROM * reach:
         paths.append("/world/sun/name")
     return tuple(paths)
 
@@ -188,7 +183,15 @@ def revolution_time(row: Run) -> float:
     return float(min(2 * np.pi / rate, 20 * row.setting.duration)) if rate > 0 else row.setting.duration
 
 
-def about_sun(radius: float, lowest: float, highest: float, tips, middle: Samples, setting: Setting) -> list[Camera]:
+def about_sun(
+    radius: float,
+    lowest: float,
+    highest: float,
+    tips: np.ndarray,
+    middle: Samples,
+    setting: Setting,
+    craft: CraftDrawing,
+) -> list[Camera]:
     """Cameras of a scene round the Sun: from outside, from the pole, along with the craft.
 
     tips : (k, 3) view units, where arrows of thrust end: they must be in sight
@@ -196,7 +199,7 @@ def about_sun(radius: float, lowest: float, highest: float, tips, middle: Sample
     lifted = highest - lowest > 0.12 * radius
     direction = unit(np.array([0.11, -0.90, 0.41] if lifted else [0.05, -0.84, 0.53]))
     # the eye sees a third of its distance up and down: an orbit seen aslant and what rises above it must fit in
-    half = 0.5 * (highest - lowest) * np.hypot(*direction[:2]) + look.DISC_RADIUS * radius * direction[2]
+    half = 0.5 * (highest - lowest) * np.hypot(*direction[:2]) + style.DISC_RADIUS * radius * direction[2]
     distance = max((2.08 if lifted else 1.6) * radius, half / (0.33 if lifted else 0.40))
     reach = float(np.linalg.norm(tips[:, :2], axis=1).max())
     raised = 0.45 * (highest + lowest) if highest - lowest > 0.4 * radius else 0.0
@@ -204,11 +207,11 @@ def about_sun(radius: float, lowest: float, highest: float, tips, middle: Sample
     nearer = 0.0 if lifted else -0.3 * radius
     middle_of_view = np.array([0.0, nearer, 0.02 * radius + raised])
     distance = max(distance, distance_to_see(tips, middle_of_view, direction))
-    if setting.ensembles:  # steeper and closer: clouds lie in the plane of motion
+    if setting.ensembles:  # steeper and closer: ensembles lie in the plane of motion
         direction, distance = unit(np.array([0.05, -0.76, 0.65])), 1.92 * radius
         if lifted:
             direction, distance = unit(np.array([0.08, -0.88, 0.47])), max(1.92 * radius, half / 0.38)
-    follow = follow_eye(middle, setting.craft.kind) * radius
+    follow = follow_eye(middle, craft) * radius
     return [
         Camera("System", "/", tuple((middle_of_view + distance * direction).tolist()), tuple(middle_of_view.tolist())),
         Camera("From the pole", "/", (0.0, -0.01 * radius, max(2.45 * radius, 1.5 * highest, 2.1 * reach))),
@@ -216,19 +219,19 @@ def about_sun(radius: float, lowest: float, highest: float, tips, middle: Sample
     ]
 
 
-def distance_to_see(places, target, direction) -> float:
+def distance_to_see(places: np.ndarray, target: np.ndarray, direction: np.ndarray) -> float:
     """How far from `target` along `direction` an eye must be to see places (k, 3) within its field, about half of its
     distance up and down and once its distance sideways."""
     right = unit(np.cross([0.0, 0.0, 1.0], direction))
     up = np.cross(direction, right)
-    off = np.asarray(places) - target
+    off = places - target
     needed = np.maximum(np.abs(off @ up) / 0.47, np.abs(off @ right) / 0.95) + off @ direction
     return float(needed.max())
 
 
-def follow_eye(middle: Samples, kind: str) -> np.ndarray:
+def follow_eye(middle: Samples, craft: CraftDrawing) -> np.ndarray:
     """Where the view along with the craft looks from, in its orbital frame: a film must show its sunward side."""
-    if kind != "solar-sail":
+    if not craft.facing:
         return np.array([0.30, -0.62, 0.26])
     eyes = np.array([[-0.42, side * 0.50, height] for side in (1, -1) for height in (0.26, 0.44)])
     facing = -unit(eyes) @ middle.normal_rtn[0]
@@ -263,39 +266,13 @@ def descent_camera(radius: float) -> list[Camera]:
     return [Camera(DESCENT, "/world/plane", (middle, 0.0, distance), (middle, 0.0, 0.0), (1.0, 0.0, 0.0))]
 
 
-def close_up_camera(setting: Setting, middle: Samples) -> Camera:
-    """The camera of the close-up: arrows apart, the sunlit side of a film in sight."""
-    if setting.craft.kind == "plasma-brake":
-        return Camera("Tether close-up (orbital frame, not to scale)", "/sail", (5.0, -23.0, 3.5), (0.0, 0.0, -5.0))
-    normal, thrust, velocity = middle.normal_rtn[0], middle.thrust_rtn[0], middle.velocity_rtn[0]
-    arrows = [np.array([1.0, 0.0, 0.0]), velocity]
-    for arrow in (normal, unit(thrust)):
-        if all(np.linalg.norm(arrow - other) > 0.05 for other in arrows) and np.linalg.norm(arrow) > 0.5:
-            arrows.append(arrow)
-    film = setting.craft.kind == "solar-sail"
-    fan = np.cross([1.0, 0.0, 0.0], normal)
-    eye = cameras.apart(
-        arrows,
-        facing=normal if film else None,
-        slanted=normal if setting.craft.kind == "electric-sail" else None,
-        open_to=unit(fan) if np.linalg.norm(fan) > 0.05 else None,
-        elevations=(20, 28, 36) if film else (20, 28, 36, 44, 52),
-    )
-    name = "Thruster close-up" if setting.craft.kind == "thruster" else f"{setting.craft.label or 'Craft'} close-up"
-    return Camera(f"{name} (orbital frame)", "/sail", tuple((26.0 * eye).tolist()), (1.0, 0.0, 0.0))
-
-
-def name_views(views: list[Camera], setting: Setting, frame: Frame, sail: float, tether: float) -> tuple[Camera, ...]:
-    """Say in the first view's name what is not to scale and what is slowed."""
-    craft, notes = setting.craft, []
-    sizes = {
-        "solar-sail": (sail, craft.side),
-        "electric-sail": (sail, craft.tether_length),
-        "plasma-brake": (tether, craft.tether_length),
-    }
-    drawn, true = sizes.get(craft.kind, (0.0, None))
+def name_views(
+    views: list[Camera], setting: Setting, frame: Frame, craft: CraftDrawing, drawn: float
+) -> tuple[Camera, ...]:
+    """Say in the first view's name what is not to scale and what is slowed. drawn : size of the craft, view units."""
+    notes, true = [], craft.true_size(setting.craft)
     if true and drawn:
-        notes.append(f"{craft.label or 'craft'} ×{in_words(drawn * frame.unit / true)}")
+        notes.append(f"{setting.craft.label or 'craft'} ×{in_words(drawn * frame.unit / true)}")
     if frame.sparse and frame.slowed > 1.5:
         notes.append(f"orbiting slowed {in_words(frame.slowed)} times")
     if views[0].origin != "/":

@@ -11,12 +11,12 @@ import rerun as rr
 
 from sailviz.frames import quaternion, to_frame, unit
 from sailviz.recording.contract import word
-from sailviz.recording.drawing import meshes
-from sailviz.recording.drawing import style as look
-from sailviz.recording.drawing.log import Pen, f4
+from sailviz.recording.drawing import style
+from sailviz.recording.drawing.log import Picture, f4
 from sailviz.recording.drawing.samples import Frame, Samples, rings
 from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Run, Shell
+from sailviz.shapes.primitives import band, circle
 
 CIRCLE = 361  # points
 STAIRS = 1.1  # how far the labels of the rings are spread, in heights of the highest
@@ -26,42 +26,44 @@ FAINT = 0.02  # share of the ramp below which a map is not drawn
 class OrbitPlane:
     """Writes /world/plane."""
 
-    def __init__(self, pen: Pen, first: Run, frame: Frame, ladder: int):
-        self._pen, self._frame, self._ladder = pen, frame, ladder
+    def __init__(self, picture: Picture, first: Run, frame: Frame, ladder: int):
+        self._picture, self._frame, self._ladder = picture, frame, ladder
         self._day = 86400.0 if frame.duration > 3 * 86400 else 3600.0
-        circle = meshes.ring(CIRCLE)
         # with close rows there is a trail: a line on it would tear
         self._orbits = ("/world/orbit", "/world/plane/orbit") if frame.sparse else ("/world/plane/orbit",)
         for path in self._orbits:
-            pen.static(path, rr.LineStrips3D.from_fields(strips=[f4(circle)], radii=points(look.WIDTH["recent"] * 0.8)))
-        pen.strip_style("/world/plane/ladder", None, look.WIDTH["ladder"])
-        pen.label_style("/world/plane/now", look.CRAFT)
-        pen.static("/world/plane/rungs", rr.Points3D.from_fields(radii=points(look.ANCHOR), show_labels=True))
+            picture.log_static(
+                path,
+                rr.LineStrips3D.from_fields(strips=[f4(circle(CIRCLE))], radii=points(style.WIDTH["recent"] * 0.8)),
+            )
+        picture.log_strip_style("/world/plane/ladder", None, style.WIDTH["ladder"])
+        picture.log_label_style("/world/plane/now", style.CRAFT)
+        picture.log_static("/world/plane/rungs", rr.Points3D.from_fields(radii=points(style.ANCHOR), show_labels=True))
         axes = plane_axes(first)[0]
         for shell in first.setting.shells:
-            draw_shell(pen, f"/world/plane/shells/{word(shell.name)}", shell, axes, frame.unit)
+            log_shell(picture, f"/world/plane/shells/{word(shell.name)}", shell, axes, frame.unit)
 
-    def add(self, samples: Samples, colors) -> None:
-        pen, index, run = self._pen, samples.index, samples.run
+    def add(self, samples: Samples, colors: np.ndarray) -> None:
+        picture, index, run = self._picture, samples.index, samples.run
         axes = plane_axes(run)
-        pen.move("/world/plane", index, quaternion=quaternion(axes))
+        picture.log_pose("/world/plane", index, quaternion=quaternion(axes))
         identity = np.broadcast_to(np.eye(3), axes.shape)
         for path in self._orbits:
             turned = axes if path == "/world/plane/orbit" else identity
             values = {name: f4(value) for name, value in rings(run, turned, self._frame).items()}
             ramp = rr.LineStrips3D.columns(colors=np.asarray(colors, np.uint32))
-            pen.columns(path, index, [*rr.Transform3D.columns(**values), *ramp])
+            picture.log_columns(path, index, [*rr.Transform3D.columns(**values), *ramp])
         radius = run.elements.semi_major_axis / self._frame.unit
         texts = [f"{altitude:.0f} km" for altitude in (radius - 1) * self._frame.unit / 1e3]
-        pen.labels("/world/plane/now", index, np.stack([radius, 0 * radius, 0 * radius], 1), texts)
+        picture.log_labels("/world/plane/now", index, np.stack([radius, 0 * radius, 0 * radius], 1), texts)
 
-    def add_ladder(self, samples: Samples, colors) -> None:
+    def add_ladder(self, samples: Samples, colors: np.ndarray) -> None:
         """Orbits far apart in time, turned into one plane, every other one with its age and altitude."""
         run = samples.run
         placed = rings(run, plane_axes(run), self._frame)
-        lines = placed["scale"][:, None] * meshes.ring(CIRCLE)
+        lines = placed["scale"][:, None] * circle(CIRCLE)
         lines = turned_by(placed["quaternion"], lines) + placed["translation"][:, None]
-        self._pen.strips("/world/plane/ladder", samples.index, lines, colors)
+        self._picture.log_strips("/world/plane/ladder", samples.index, lines, colors)
         radius = run.elements.semi_major_axis / self._frame.unit
         rung = np.round((run.time - self._frame.start) / self._frame.duration * self._ladder)
         height = STAIRS * (self._frame.origin_radius - 1)
@@ -74,7 +76,7 @@ class OrbitPlane:
             place = np.stack([np.sqrt(np.clip(radius**2 - across**2, 0, None)), across, 0 * across], 1)
             colors = np.asarray(colors, np.uint32)[named]
             columns = rr.Points3D.columns(positions=f4(place[named]), labels=[texts[k] for k in named], colors=colors)
-            self._pen.columns("/world/plane/rungs", samples.index_of(named), columns)
+            self._picture.log_columns("/world/plane/rungs", samples.index_of(named), columns)
 
 
 def plane_axes(run: Run) -> np.ndarray:
@@ -88,14 +90,14 @@ def plane_axes(run: Run) -> np.ndarray:
     return np.stack([np.cross(y, normal), y, normal], -1)
 
 
-def turned_by(quaternions, vectors) -> np.ndarray:
+def turned_by(quaternions: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """Vectors (n, k, 3) turned by quaternions (n, 4) xyzw."""
     axis, scalar = quaternions[:, None, :3], quaternions[:, None, 3:]
     twice = 2 * np.cross(axis, vectors)
     return vectors + scalar * twice + np.cross(axis, twice)
 
 
-def draw_shell(pen: Pen, path: str, shell: Shell, axes, length: float) -> None:
+def log_shell(picture: Picture, path: str, shell: Shell, axes: np.ndarray, length: float) -> None:
     """A map as a translucent band, bright where the value is large: its logarithm, where it spans a factor of ten."""
     start = float(np.arctan2(*to_frame(axes, np.asarray(shell.reference, float))[[1, 0]]))
     sense = 1.0 if to_frame(axes, np.asarray(shell.normal, float))[2] >= 0 else -1.0
@@ -104,25 +106,24 @@ def draw_shell(pen: Pen, path: str, shell: Shell, axes, length: float) -> None:
         angle, value = np.append(angle, angle[0] + 2 * np.pi), np.concatenate([value, value[:1]])
     direction = start + sense * angle
     radius = 1 + np.asarray(shell.altitude, float) / length
-    corners = np.stack([np.cos(direction)[:, None] * radius, np.sin(direction)[:, None] * radius, 0 * value], -1)
     share = shares(value)
-    faces = meshes.grid_faces(len(angle) - 1, len(radius) - 1)
-    faces = faces[share.ravel()[faces].max(1) > FAINT]
-    stops = np.array(look.PLASMA, float)
+    mesh = band(direction, radius)
+    faces = mesh.faces[share.ravel()[mesh.faces].max(1) > FAINT]
+    stops = np.array(style.PLASMA, float)
     where = np.linspace(0, 1, len(stops))
     colors = np.stack([np.interp(share.ravel(), where, stops[:, k]) for k in range(3)], 1).astype(np.uint8)
-    pen.static(
+    picture.log_static(
         path,
         rr.Mesh3D(
-            vertex_positions=f4(corners.reshape(-1, 3)),
+            vertex_positions=f4(mesh.vertices),
             triangle_indices=np.ascontiguousarray(faces, np.uint32),
             vertex_colors=colors,
-            albedo_factor=[255, 255, 255, look.PLASMA_ALPHA],
+            albedo_factor=[255, 255, 255, style.PLASMA_ALPHA],
         ),
     )
 
 
-def shares(value) -> np.ndarray:
+def shares(value: np.ndarray) -> np.ndarray:
     """Values as 0 to 1, on a logarithmic scale where they span more than a factor of ten, at most three decades."""
     high = np.nanmax(value)
     low = np.nanmin(value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import pairwise
 from pathlib import Path
 
@@ -10,14 +11,16 @@ import rerun as rr
 
 import sailviz
 from sailviz.frames import body_axes, quaternion, unit
-from sailviz.recording.drawing import meshes
-from sailviz.recording.drawing import style as look
-from sailviz.recording.drawing.log import Pen
+from sailviz.recording.drawing import style
+from sailviz.recording.drawing.log import Picture
 from sailviz.recording.drawing.samples import Samples
 from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Run
+from sailviz.shapes.planets import globe
+from sailviz.shapes.primitives import Trimesh, ball, cap, tube
 
 NIGHT_EDGES = np.radians(np.linspace(100, 78, 16))  # half-angles of what darkens: together a soft terminator
+NIGHT_RADIUS = 1.0035  # so that it lies on the ground and not in it
 NIGHT_ALPHA = 55 / 255  # of each of them, one over the other
 HALO = ((1.012, 80), (1.025, 48), (1.042, 28), (1.065, 14))  # radius, alpha
 
@@ -25,63 +28,65 @@ HALO = ((1.012, 80), (1.025, 48), (1.042, 28), (1.065, 14))  # radius, alpha
 class Planet:
     """Writes /world/center, /world/night and /world/season, a frame that turns about the axis with the Sun."""
 
-    def __init__(self, pen: Pen, first: Run):
-        self._pen = pen
-        draw_planet(pen, "/world/center/globe", first.setting.body.name)
-        draw_air(pen, "/world/center/air", meshes.sphere(32, 64)[0])
+    def __init__(self, picture: Picture, first: Run):
+        self._picture = picture
+        log_planet(picture, "/world/center/globe", first.setting.body.name)
+        log_air(picture, "/world/center/air", ball())
         if "Sun" in first.bodies:
-            draw_night(pen)
+            log_night(picture)
 
     def add(self, samples: Samples) -> None:
         """Turn the globe about its axis, and the night away from the Sun."""
         if samples.earth_rotation is not None:
-            self._pen.move("/world/center/globe", samples.index, quaternion=about_axis(samples.earth_rotation))
+            self._picture.log_pose("/world/center/globe", samples.index, quaternion=about_axis(samples.earth_rotation))
         if "Sun" in samples.run.bodies:
             sun = samples.run.bodies["Sun"]
             axes = body_axes(-unit(sun), np.tile([0.0, 0.0, 1.0], (len(samples), 1)))
-            self._pen.move("/world/night", samples.index, quaternion=quaternion(axes))
-            self._pen.move("/world/season", samples.index, quaternion=about_axis(np.arctan2(sun[:, 1], sun[:, 0])))
+            self._picture.log_pose("/world/night", samples.index, quaternion=quaternion(axes))
+            self._picture.log_pose(
+                "/world/season", samples.index, quaternion=about_axis(np.arctan2(sun[:, 1], sun[:, 0]))
+            )
 
 
-def about_axis(angle) -> np.ndarray:
+def about_axis(angle: np.ndarray) -> np.ndarray:
     """Quaternions (n, 4) xyzw of turns about z by angles (n,) rad."""
     half = 0.5 * np.mod(angle, 2 * np.pi)
     return np.stack([0 * half, 0 * half, np.sin(half), np.cos(half)], 1)
 
 
-def draw_planet(pen: Pen, path: str, name: str) -> None:
+def log_planet(picture: Picture, path: str, name: str) -> None:
     """A planet of radius 1: the Earth with its map, longitude 0 at x, others plain."""
-    ball, uv = meshes.sphere(48, 96)
-    picture = asset("earth_2048.jpg") if name == "Earth" else None
-    if picture is None:
-        color = look.OCEAN if name == "Earth" else look.dim(look.PLANETS.get(name, look.ROCK), 0.8)
-        pen.mesh(f"{path}/ball", ball, color, shaded=False)
+    world_map = asset("earth_2048.jpg") if name == "Earth" else None
+    if world_map is None:
+        color = style.OCEAN if name == "Earth" else style.dim(style.PLANETS.get(name, style.ROCK), 0.8)
+        picture.log_mesh(f"{path}/ball", ball(48, 96), color, shaded=False)
         return
-    glb = meshes.textured_glb(ball, uv, picture.read_bytes())
-    pen.static(f"{path}/ball", rr.Asset3D(contents=glb, media_type="model/gltf-binary"))
+    picture.log_static(
+        f"{path}/ball", rr.Asset3D(contents=globe(world_map.read_bytes()), media_type="model/gltf-binary")
+    )
 
 
-def draw_air(pen: Pen, path: str, ball: meshes.Mesh, halo=HALO) -> None:
+def log_air(picture: Picture, path: str, sphere: Trimesh, halo: Iterable[tuple[float, int]] = HALO) -> None:
     """A halo: the far sides of nested shells. halo : pairs of radius and alpha."""
     for k, (radius, alpha) in enumerate(halo):
-        shell = meshes.Mesh(radius * ball.vertices, ball.faces, ball.normals)
-        pen.mesh(f"{path}/shell{k}", shell, [*look.AIR, alpha], shaded=False, side="back")
+        shell = sphere.copy()
+        shell.apply_scale(radius)
+        picture.log_mesh(f"{path}/shell{k}", shell, [*style.AIR, alpha], shaded=False, side="back")
 
 
-def draw_night(pen: Pen) -> None:
+def log_night(picture: Picture) -> None:
     """Zones over the night side, darker and darker, and the umbra, +z away from the Sun, and an arrow of sunlight."""
     edges = [*NIGHT_EDGES, 0.0]
     for k, (outer, inner) in enumerate(pairwise(edges)):
-        zone = meshes.cap(outer, 16 if inner == 0 else 1, 64, inner)
-        lifted = meshes.Mesh(1.0035 * zone.vertices, zone.faces, zone.normals)
+        zone = cap(outer, 16 if inner == 0 else 1, 64, inner, radius=NIGHT_RADIUS)
         alpha = round(255 * (1 - (1 - NIGHT_ALPHA) ** (k + 1)))
-        pen.mesh(f"/world/night/zone{k}", lifted, [*look.NIGHT, alpha], shaded=False)
-    pen.mesh("/world/night/umbra", meshes.tube(0.0, 2.6, 1.0, 1.0, 96), look.UMBRA, shaded=False)
-    pen.static(
+        picture.log_mesh(f"/world/night/zone{k}", zone, [*style.NIGHT, alpha], shaded=False)
+    picture.log_mesh("/world/night/umbra", tube(0.0, 2.6, 1.0, 1.0, 96), style.UMBRA, shaded=False)
+    picture.log_static(
         "/world/night/sunlight",
-        rr.Arrows3D(origins=[[0, 0, -1.32]], vectors=[[0, 0, 0.20]], colors=[look.SUN], radii=points(2.0)),
+        rr.Arrows3D(origins=[[0, 0, -1.32]], vectors=[[0, 0, 0.20]], colors=[style.SUN], radii=points(2.0)),
     )
-    pen.label("/world/night/sunlight/name", "sunlight", look.SUN, (0, 0, -1.36))
+    picture.log_label("/world/night/sunlight/name", "sunlight", style.SUN, (0, 0, -1.36))
 
 
 def asset(name: str) -> Path | None:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailviz.recording.drawing import style as look
+from sailviz.recording.drawing import style
+from sailviz.recording.drawing.craft import CraftDrawing
 from sailviz.recording.drawing.samples import Frame
 from sailviz.run.arrays import Run
 
@@ -50,7 +51,7 @@ UNITS = {  # ending of a name -> factor and unit on the plot; the longest that f
 LOGARITHMIC = {"_m3": "1/m³", "_1_m3": "1/m³", "_m_3": "1/m³", "_kg_m3": "kg/m³", "_per_m3": "1/m³"}
 LOGARITHMIC_COLUMNS = {"air_drag_N": "N"}  # over many powers of ten although of another unit
 DRAWN_OTHERWISE = ("earth_rotation_rad", "mean_altitude_m", "quasi_circular_altitude_m", "primer_direction")
-COLORS = {"plasma_density_per_m3": look.SERIES[4], "plasma_force_N_m": look.THRUST, "air_drag_N": look.SERIES[1]}
+COLORS = {"plasma_density_per_m3": style.SERIES[4], "plasma_force_N_m": style.THRUST, "air_drag_N": style.SERIES[1]}
 
 
 def degrees(*columns) -> np.ndarray:
@@ -74,23 +75,21 @@ def clock_about(start: float):
     return lambda run: degrees(np.mod(run.attitude.clock - low, 2 * np.pi) + low)
 
 
-def plots_of(first: Run, frame: Frame) -> list[Plot]:
+def plots_of(first: Run, frame: Frame, craft: CraftDrawing) -> list[Plot]:
     """All curves that are written of a run; the layout shows those that say something."""
     unit, name = thrust_units(first)
-    kind = "Drag" if first.setting.craft.kind == "plasma-brake" else "Thrust"
     environment = [
         name
         for name, values in first.environment.items()
         if values.dtype != bool and values.ndim == 1 and name not in DRAWN_OTHERWISE
     ]
-    steered = first.setting.craft.kind != "plasma-brake"
     return [
-        distance_plot(first, frame),
+        distance_plot(first, frame, craft),
         Plot(
             "/plots/inclination",
             "Inclination [deg]",
             ("i",),
-            look.SERIES[2:3],
+            style.SERIES[2:3],
             lambda run: degrees(run.elements.inclination),
             noise=1e-3,
         ),
@@ -98,20 +97,20 @@ def plots_of(first: Run, frame: Frame) -> list[Plot]:
             "/plots/eccentricity",
             "Eccentricity",
             ("e",),
-            look.SERIES[3:4],
+            style.SERIES[3:4],
             lambda run: run.elements.eccentricity[:, None],
         ),
-        *(angle_plots(first) if steered else []),
+        *(angle_plots(first) if craft.has_angles else []),
         Plot(
             "/plots/thrust",
-            f"{kind} acceleration [{name}]",
-            (kind.lower(),),
-            (look.THRUST,),
+            f"{craft.force} acceleration [{name}]",
+            (craft.force.lower(),),
+            (style.THRUST,),
             lambda run: unit * run.thrust.magnitude[:, None],
             from_zero=True,
         ),
         *([approximation_plot(first)] if first.approximations else []),
-        *(environment_plot(name, COLORS.get(name, look.SERIES[(4 + k) % 5])) for k, name in enumerate(environment)),
+        *(environment_plot(name, COLORS.get(name, style.SERIES[(4 + k) % 5])) for k, name in enumerate(environment)),
     ]
 
 
@@ -122,7 +121,7 @@ def angle_plots(first: Run) -> list[Plot]:
             "/plots/angles",
             "Pitch and cone angle [deg]",
             ("pitch", "cone"),
-            (look.PITCH, look.CONE),
+            (style.PITCH, style.CONE),
             pitch_and_cone,
             noise=1e-3,
         ),
@@ -130,16 +129,16 @@ def angle_plots(first: Run) -> list[Plot]:
             "/plots/clock",
             "Clock angle [deg]",
             ("clock",),
-            (look.CLOCK,),
+            (style.CLOCK,),
             clock_about(first.attitude.clock[0]),
             noise=1e-3,
         ),
     ]
 
 
-def distance_plot(first: Run, frame: Frame) -> Plot:
+def distance_plot(first: Run, frame: Frame, craft: CraftDrawing) -> Plot:
     """Distance and semi-major axis: over a planet from its surface, in km, elsewhere from the centre, in view units."""
-    comes_down = first.setting.craft.kind == "plasma-brake" or "air_drag_N" in first.environment
+    comes_down = craft.descends or "air_drag_N" in first.environment
     if comes_down and first.setting.body.radius:
         return descent_plot(first)
     radius = 0.0 if frame.sun else first.setting.body.radius
@@ -150,9 +149,9 @@ def distance_plot(first: Run, frame: Frame) -> Plot:
         return (np.stack([r, a], 1) - radius) / unit
 
     if radius:
-        return Plot("/plots/altitude", "Altitude [km]", ("h", "a - R"), look.SERIES[:2], values)
+        return Plot("/plots/altitude", "Altitude [km]", ("h", "a - R"), style.SERIES[:2], values)
     title = f"Distance r and semi-major axis a [{frame.unit_name}]"
-    return Plot("/plots/distance", title, ("r", "a"), look.SERIES[:2], values)
+    return Plot("/plots/distance", title, ("r", "a"), style.SERIES[:2], values)
 
 
 def descent_plot(first: Run) -> Plot:
@@ -170,9 +169,9 @@ def descent_plot(first: Run) -> Plot:
             columns.append(run.environment["quasi_circular_altitude_m"])
         return np.stack(columns, 1) / 1e3
 
-    names, colors = ("perigee", "apogee", "mean"), (look.SERIES[2], look.SERIES[3], look.SERIES[0])
+    names, colors = ("perigee", "apogee", "mean"), (style.SERIES[2], style.SERIES[3], style.SERIES[0])
     if analytic:
-        names, colors = (*names, "analytic decay"), (*colors, look.SERIES[1])
+        names, colors = (*names, "analytic decay"), (*colors, style.SERIES[1])
     return Plot("/plots/altitude", "Altitude [km]", names, colors, values)
 
 
@@ -192,7 +191,7 @@ def approximation_plot(first: Run) -> Plot:
         off = [np.linalg.norm(run.approximations[name] - run.position, axis=1) for name in names]
         return 100 * np.stack(off, 1) / np.linalg.norm(run.position, axis=1)[:, None]
 
-    colors = tuple(look.SERIES[(1 + k) % 5] for k in range(len(names)))
+    colors = tuple(style.SERIES[(1 + k) % 5] for k in range(len(names)))
     return Plot("/plots/approximation", "Approximation off by [% of r]", names, colors, values, from_zero=True)
 
 

@@ -6,23 +6,26 @@ the thrust, so that weak ones are still seen.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import rerun as rr
 
 from sailviz.frames import body_axes, quaternion, unit
-from sailviz.recording.drawing import craft
-from sailviz.recording.drawing import style as look
-from sailviz.recording.drawing.layout import Layout
-from sailviz.recording.drawing.log import Pen, f4
+from sailviz.recording.drawing import cameras, style
+from sailviz.recording.drawing.cameras import Camera
+from sailviz.recording.drawing.craft import CraftDrawing, Glow
+from sailviz.recording.drawing.log import Picture, f4
 from sailviz.recording.drawing.samples import Samples
-from sailviz.recording.drawing.style import points
-from sailviz.recording.drawing.system_view import draw_stars
+from sailviz.recording.drawing.sky import log_stars
 from sailviz.run.arrays import Run
 
-SIZE = {"solar-sail": 15.0, "electric-sail": 9.0, "thruster": 8.0, "none": 1.0}
-NORMAL_LENGTH = {"solar-sail": 13.0, "electric-sail": 10.0, "thruster": 10.0}
+if TYPE_CHECKING:
+    from sailviz.recording.drawing.layout import Layout
+
 VELOCITY_LENGTH = 11.0
 PRIMER_LENGTH = 9.0
+CLOCK_AXIS = 10.0  # how far along the thrust the clock angle is shown where there is no arrow of the normal
 PITCH_RADIUS = 6.0
 CONE_RADIUS = 4.4
 ARC = 25  # points of an arc
@@ -31,129 +34,140 @@ ARC = 25  # points of an arc
 class SailCloseUp:
     """Writes /sail for everything that has an attitude: film, wheel or thruster."""
 
-    def __init__(self, pen: Pen, first: Run):
-        self._pen, self._kind = pen, first.setting.craft.kind
-        self._length = NORMAL_LENGTH.get(self._kind, 10.0)
-        pen.static("/sail", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
-        draw_stars(pen, "/sail/stars", 900.0, 700)
-        craft.draw(pen, "/sail/body/shape", self._kind, near=True)
-        if self._kind == "thruster":
-            craft.plume(pen, "/sail/body/shape/plume")
-        self._glow = craft.Glow(pen, "/sail/body", self._kind)
-        pen.scale("/sail/body/shape", SIZE.get(self._kind, 9.0))
+    def __init__(self, picture: Picture, first: Run, craft: CraftDrawing):
+        self._picture, self._craft = picture, craft
+        self._label = craft.close_name or first.setting.craft.label or "Craft"
+        self._normal = craft.normal_length is not None
+        self._length = craft.normal_length or CLOCK_AXIS
+        picture.log_static("/sail", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+        log_stars(picture, "/sail/stars", 900.0, 700)
+        craft.log_shape(picture, "/sail/body/shape", True)
+        self._glow = Glow(picture, "/sail/body", craft)
+        picture.log_scale("/sail/body/shape", craft.close_size)
         if first.setting.body.name == "Sun":
-            self._draw_flow()
-        pen.lines("/sail/radial", [[[0, 0, 0], [12, 0, 0]]], [130, 104, 44], look.WIDTH["helper"])
-        self._axis = self._kind != "thruster"  # a thruster's normal is its thrust
-        if self._axis:
-            pen.arrow_style("/sail/normal", look.NORMAL, look.WIDTH["close arrow"])
-            pen.label_style("/sail/normal/name", look.NORMAL, "normal")
-        pen.arrow_style("/sail/velocity", look.VELOCITY, look.WIDTH["close arrow"])
-        pen.arrow_style("/sail/primer", look.PRIMER, look.WIDTH["close arrow"])
-        pen.label_style("/sail/primer/name", look.PRIMER, "primer")
-        pen.arrow_style("/sail/force/arrow", look.THRUST, look.WIDTH["close thrust"])
-        pen.label_style("/sail/velocity/name", look.VELOCITY, "velocity")
-        pen.label_style("/sail/force_name", look.THRUST)
-        pen.strip_style("/sail/pitch/arc", look.PITCH, look.WIDTH["arc"])
+            self._log_flow()
+        picture.log_lines("/sail/radial", [[[0, 0, 0], [12, 0, 0]]], style.RADIAL, style.WIDTH["helper"])
+        if self._normal:
+            picture.log_arrow_style("/sail/normal", style.NORMAL, style.WIDTH["close arrow"])
+            picture.log_label_style("/sail/normal/name", style.NORMAL, "normal")
+        picture.log_arrow_style("/sail/velocity", style.VELOCITY, style.WIDTH["close arrow"])
+        picture.log_arrow_style("/sail/primer", style.PRIMER, style.WIDTH["close arrow"])
+        picture.log_label_style("/sail/primer/name", style.PRIMER, "primer")
+        picture.log_arrow_style("/sail/force/arrow", style.THRUST, style.WIDTH["close thrust"])
+        picture.log_label_style("/sail/velocity/name", style.VELOCITY, "velocity")
+        picture.log_label_style("/sail/force_name", style.THRUST)
+        picture.log_strip_style("/sail/pitch/arc", style.PITCH, style.WIDTH["arc"])
         k = np.arange(1, ARC)
         fan = np.stack([0 * k, k, k + 1], 1).astype(np.uint32)
-        pen.triangles("/sail/pitch/fan", fan, [*look.PITCH, 38])
-        pen.label_style("/sail/pitch/name", look.PITCH)
-        pen.strip_style("/sail/cone", look.CONE, look.WIDTH["arc"])
-        pen.strip_style("/sail/clock/circle", look.CLOCK_CIRCLE, look.WIDTH["helper"])
-        pen.strip_style("/sail/clock/spokes", look.CLOCK_CIRCLE, look.WIDTH["helper"])
-        pen.strip_style("/sail/clock/arc", look.CLOCK, 1.8)
-        pen.label_style("/sail/clock/name", look.CLOCK)
+        picture.log_triangles("/sail/pitch/fan", fan, [*style.PITCH, 38])
+        picture.log_label_style("/sail/pitch/name", style.PITCH)
+        picture.log_strip_style("/sail/cone", style.CONE, style.WIDTH["arc"])
+        picture.log_strip_style("/sail/clock/circle", style.CLOCK_CIRCLE, style.WIDTH["helper"])
+        picture.log_strip_style("/sail/clock/spokes", style.CLOCK_CIRCLE, style.WIDTH["helper"])
+        picture.log_strip_style("/sail/clock/arc", style.CLOCK, 1.8)
+        picture.log_label_style("/sail/clock/name", style.CLOCK)
 
-    def _draw_flow(self) -> None:
+    def _log_flow(self) -> None:
         """What comes from the Sun: light, or the wind on an E-sail."""
-        wind = self._kind == "electric-sail"
-        color = look.WIND if wind else look.SUN
+        name, color = self._craft.flow
         origins = [[-12, y, z] for y in (-5, 0, 5) for z in (-5, 0, 5)]
-        self._pen.static(
-            "/sail/flow",
-            rr.Arrows3D(
-                origins=origins,
-                vectors=[[3.6, 0, 0]] * len(origins),
-                colors=[look.dim(color, 0.6)],
-                radii=points(look.WIDTH["flow"]),
-            ),
+        dimmed, width = style.dim(color, 0.6), style.WIDTH["flow"]
+        self._picture.log_fixed_arrows("/sail/flow", origins, [3.6, 0, 0], dimmed, width)
+        self._picture.log_label("/sail/flow/name", name, color, (-9.0, 0, 6.0))
+
+    def camera(self, middle: Samples) -> Camera:
+        """Arrows apart, the sunlit side of a film in sight."""
+        normal, thrust, velocity = middle.normal_rtn[0], middle.thrust_rtn[0], middle.velocity_rtn[0]
+        arrows = [np.array([1.0, 0.0, 0.0]), velocity]
+        for arrow in (normal, unit(thrust)):
+            if all(np.linalg.norm(arrow - other) > 0.05 for other in arrows) and np.linalg.norm(arrow) > 0.5:
+                arrows.append(arrow)
+        fan = np.cross([1.0, 0.0, 0.0], normal)
+        eye = cameras.apart(
+            arrows,
+            facing=normal if self._craft.facing else None,
+            slanted=normal if self._craft.slanted else None,
+            open_to=unit(fan) if np.linalg.norm(fan) > 0.05 else None,
+            elevations=(20, 28, 36) if self._craft.facing else (20, 28, 36, 44, 52),
         )
-        self._pen.label("/sail/flow/name", "solar wind" if wind else "sunlight", color, (-9.0, 0, 6.0))
+        name = f"{self._label} close-up (orbital frame)"
+        return Camera(name, "/sail", tuple((26.0 * eye).tolist()), (1.0, 0.0, 0.0))
 
     def add(self, samples: Samples) -> None:
-        pen, index, count = self._pen, samples.index, len(samples)
+        """A group of drawn rows."""
+        picture, index, count = self._picture, samples.index, len(samples)
         normal, velocity = samples.normal_rtn, samples.velocity_rtn
         axes = body_axes(normal, np.tile([0.0, 1.0, 0.0], (count, 1)))
-        pen.move("/sail/body", index, quaternion=quaternion(axes))
+        picture.log_pose("/sail/body", index, quaternion=quaternion(axes))
         self._glow.add(samples.index_of, samples.run.thrust.on)
-        if self._axis:
-            pen.arrows("/sail/normal", index, self._length * normal)
-            pen.labels("/sail/normal/name", index, 1.06 * self._length * normal)
-        pen.arrows("/sail/velocity", index, VELOCITY_LENGTH * velocity)
+        if self._normal:
+            picture.log_arrows("/sail/normal", index, self._length * normal)
+            picture.log_labels("/sail/normal/name", index, 1.06 * self._length * normal)
+        picture.log_arrows("/sail/velocity", index, VELOCITY_LENGTH * velocity)
         still = ~np.any(velocity, axis=1, keepdims=True)
-        pen.labels("/sail/velocity/name", index, np.where(still, np.nan, 1.06 * VELOCITY_LENGTH * velocity))
+        picture.log_labels("/sail/velocity/name", index, np.where(still, np.nan, 1.06 * VELOCITY_LENGTH * velocity))
         if samples.primer_rtn is not None:
-            pen.arrows("/sail/primer", index, PRIMER_LENGTH * samples.primer_rtn)
-            pen.labels("/sail/primer/name", index, 1.08 * PRIMER_LENGTH * samples.primer_rtn)
+            picture.log_arrows("/sail/primer", index, PRIMER_LENGTH * samples.primer_rtn)
+            picture.log_labels("/sail/primer/name", index, 1.08 * PRIMER_LENGTH * samples.primer_rtn)
         self._add_force(samples)
         self._add_angles(samples)
 
     def _add_force(self, samples: Samples) -> None:
         thrust, size = samples.thrust_rtn, samples.run.thrust.magnitude
         root = np.sqrt(size)[:, None] * unit(thrust)
-        self._pen.arrows("/sail/force/arrow", samples.index, root)
+        self._picture.log_arrows("/sail/force/arrow", samples.index, root)
         texts = [f"thrust {acceleration_text(a)}" if a > 0 else "no thrust" for a in size.tolist()]
-        self._pen.columns("/sail/force_name", samples.index, rr.Points3D.columns(labels=texts))
+        self._picture.log_columns("/sail/force_name", samples.index, rr.Points3D.columns(labels=texts))
 
     def _add_angles(self, samples: Samples) -> None:
         """Pitch as a fan from the radial line to the normal, cone as an arc to the thrust, clock on a circle."""
-        pen, index, count = self._pen, samples.index, len(samples)
+        picture, index, count = self._picture, samples.index, len(samples)
         attitude = samples.run.attitude
         out = np.tile([1.0, 0.0, 0.0], (count, 1))
         fan = PITCH_RADIUS * arcs(out, samples.normal_rtn)
-        pen.strips("/sail/pitch/arc", index, fan)
+        picture.log_strips("/sail/pitch/arc", index, fan)
         corners = np.concatenate([np.zeros((count, 1, 3)), fan], 1)
         columns = rr.Mesh3D.columns(vertex_positions=f4(corners.reshape(-1, 3))).partition([ARC + 1] * count)
-        pen.columns("/sail/pitch/fan", index, columns)
+        picture.log_columns("/sail/pitch/fan", index, columns)
         # on the other side of the radial line: between it and the normal there is the thrust
         across = unit(samples.normal_rtn * [0.0, 1.0, 1.0])
         place = PITCH_RADIUS * (np.cos(np.radians(14)) * out - np.sin(np.radians(14)) * across)
-        pen.labels("/sail/pitch/name", index, place, angle_texts("pitch", attitude.pitch))
+        picture.log_labels("/sail/pitch/name", index, place, angle_texts("pitch", attitude.pitch))
         thrust = np.where(np.any(samples.thrust_rtn, 1, keepdims=True), unit(samples.thrust_rtn), out)
-        pen.strips("/sail/cone", index, CONE_RADIUS * arcs(out, thrust))
+        picture.log_strips("/sail/cone", index, CONE_RADIUS * arcs(out, thrust))
         self._add_clock(samples, attitude.pitch, attitude.clock)
 
-    def _add_clock(self, samples: Samples, pitch, clock) -> None:
-        pen, index, length = self._pen, samples.index, self._length
+    def _add_clock(self, samples: Samples, pitch: np.ndarray, clock: np.ndarray) -> None:
+        picture, index, length = self._picture, samples.index, self._length
         axial, radius = length * np.cos(pitch), length * np.sin(pitch)
 
-        def on_circle(angle):  # (n, k) -> (n, k, 3); angle from the orbit normal towards the transverse direction
-            angle = np.asarray(angle)
+        def on_circle(angle: np.ndarray) -> np.ndarray:
+            """Angles (n, k) from the orbit normal towards the transverse direction -> (n, k, 3)."""
             x = np.broadcast_to(axial[:, None], angle.shape)
             return np.stack([x, radius[:, None] * np.sin(angle), radius[:, None] * np.cos(angle)], -1)
 
         full = np.tile(np.linspace(0, 2 * np.pi, 49), (len(samples), 1))
-        pen.strips("/sail/clock/circle", index, on_circle(full))
+        picture.log_strips("/sail/clock/circle", index, on_circle(full))
         center = np.stack([axial, 0 * axial, 0 * axial], -1)[:, None]
         ends = [on_circle(np.zeros((len(samples), 1))), center, on_circle(clock[:, None])]
-        pen.strips("/sail/clock/spokes", index, np.concatenate(ends, 1))
-        pen.strips("/sail/clock/arc", index, on_circle(clock[:, None] * np.linspace(0, 1, 37)))
+        picture.log_strips("/sail/clock/spokes", index, np.concatenate(ends, 1))
+        picture.log_strips("/sail/clock/arc", index, on_circle(clock[:, None] * np.linspace(0, 1, 37)))
         # where the angle starts, but on the far side of the circle where the normal's own label is near
         near = np.clip(1 - np.minimum(clock, 2 * np.pi - clock) / np.radians(60), 0, 1)
         place = on_circle((np.pi * near)[:, None])[:, 0] * [1.0, 1.15, 1.15]
         place[:, 2] -= np.clip(4.0 - radius, 0, None)  # a small circle would lie under its own label
-        pen.labels("/sail/clock/name", index, place, angle_texts("clock", clock))
+        picture.log_labels("/sail/clock/name", index, place, angle_texts("clock", clock))
 
     def size(self, layout: Layout) -> None:
-        self._pen.scale("/sail/force", layout.close_thrust_scale)
+        """The length of the thrust, and its label under the craft."""
+        self._picture.log_scale("/sail/force", layout.close_thrust_scale)
         # under the craft as the camera sees it, not at the arrow's tip, which often lies among those of other arrows
         eye = unit(np.array(layout.close_up.position))
         down = unit(eye[2] * eye - [0.0, 0.0, 1.0])
-        self._pen.static("/sail/force_name", rr.Points3D.from_fields(positions=[f4(9.3 * down)]))
+        self._picture.log_static("/sail/force_name", rr.Points3D.from_fields(positions=[f4(9.3 * down)]))
 
 
-def arcs(start, end) -> np.ndarray:
+def arcs(start: np.ndarray, end: np.ndarray) -> np.ndarray:
     """Great-circle arcs between unit vectors, (n, 3), (n, 3) -> (n, ARC, 3)."""
     across = end - np.sum(start * end, 1, keepdims=True) * start
     angle = np.arctan2(np.linalg.norm(across, axis=1), np.sum(start * end, 1))
@@ -161,12 +175,13 @@ def arcs(start, end) -> np.ndarray:
     return np.cos(share)[..., None] * start[:, None] + np.sin(share)[..., None] * unit(across)[:, None]
 
 
-def angle_texts(name: str, angle) -> list[str]:
+def angle_texts(name: str, angle: np.ndarray) -> list[str]:
     """pitch 35°: whole degrees, never -0, never 360."""
     return [f"{name} {round(value) % 360}°" for value in np.degrees(angle).tolist()]
 
 
 def acceleration_text(a: float) -> str:
+    """An acceleration in m/s2 with three digits and a handy unit."""
     for size, name in ((1e-3, "mm/s²"), (1e-6, "µm/s²"), (1e-9, "nm/s²")):
         if a >= 0.0995 * size:
             return f"{a / size:.3g} {name}"

@@ -11,7 +11,7 @@ import numpy as np
 from sailviz.constants import AU, ROTATION_EARTH
 from sailviz.elements import Elements, state
 from sailviz.frames import quaternion, rtn, to_frame, unit
-from sailviz.recording import timelines as rows
+from sailviz.recording import timelines
 from sailviz.run.arrays import Run, Setting
 
 PICTURE_ROWS = 3000  # as many as a replay of 40 s has frames, and then some
@@ -51,15 +51,15 @@ class Frame:
 
     @staticmethod
     def of(run: Run) -> Frame:
-        setting, first = run.setting, rows.take(run, slice(0, 1))
+        setting, first = run.setting, timelines.take(run, slice(0, 1))
         distance = float(np.linalg.norm(first.position[0]))
         length, name = unit_of(setting, distance)
         a = float(first.elements.semi_major_axis[0])
         period = 2 * np.pi * np.sqrt(a**3 / setting.body.mu) if np.isfinite(a) and a > 0 else np.inf
-        spacing = setting.duration / max(setting.rows - 1, 1) * rows.stride(setting.rows, PICTURE_ROWS) / period
+        spacing = setting.duration / max(setting.rows - 1, 1) * timelines.stride(setting.rows, PICTURE_ROWS) / period
         sparse = bool(spacing > SPARSE)
         most = SPARSE_ROWS if sparse else PICTURE_ROWS
-        pace = setting.duration / max(setting.rows - 1, 1) * rows.stride(setting.rows, most)
+        pace = setting.duration / max(setting.rows - 1, 1) * timelines.stride(setting.rows, most)
         return Frame(
             unit=length,
             unit_name=name,
@@ -141,7 +141,7 @@ class Samples:
         return Samples(
             run=run,
             number=number,
-            index=rows.timelines(run.setting, number, run.time),
+            index=timelines.time_columns(run.setting, number, run.time),
             position=position / frame.unit,
             axes=axes,
             velocity=velocity / frame.unit,
@@ -171,7 +171,7 @@ class Samples:
 
     def index_of(self, some) -> list:
         """The timelines of some of the rows."""
-        return rows.timelines(self.run.setting, self.number[some], self.run.time[some])
+        return timelines.time_columns(self.run.setting, self.number[some], self.run.time[some])
 
 
 def slowed(run: Run, frame: Frame):

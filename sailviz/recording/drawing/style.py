@@ -21,6 +21,7 @@ NORMAL = [235, 241, 255]
 SUN = [255, 206, 84]
 SUN_DISC = [255, 238, 190]
 SUN_LINE = [92, 74, 34]
+RADIAL = [130, 104, 44]
 WIND = [186, 140, 255]
 PITCH = [255, 206, 84]
 CONE = [255, 112, 67]
@@ -104,8 +105,7 @@ FLIGHT_DOT = 1.3
 ANCHOR = 0.01  # ui points: a dot too small to see that carries a label
 
 # lengths in the system view as fractions of S, the largest distance from the centre that is drawn
-SAIL = {"solar-sail": 0.24, "electric-sail": 0.10, "plasma-brake": 0.10, "thruster": 0.10, "none": 0.0}
-AMONG_MANY = 0.6  # of it where there is a cloud to be seen
+AMONG_MANY = 0.6  # of the craft and its thrust where there is an ensemble to be seen
 THRUST_LENGTH = 0.34
 VELOCITY_LENGTH = 0.26
 PRIMER_LENGTH = 0.30

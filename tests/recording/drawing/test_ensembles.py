@@ -9,7 +9,8 @@ from sailviz import compare, load_scene
 from sailviz.constants import AU, DAY
 from sailviz.errors import SceneError
 from sailviz.recording import digest, export, read, record
-from sailviz.recording.drawing.ensembles import RING, SIGMAS, ellipses, spread
+from sailviz.recording.drawing.arrival_plane import RING, SIGMAS, ellipses
+from sailviz.recording.drawing.description import spread
 from sailviz.recording.views.info import info
 from sailviz.simulation.loop import simulate
 from sailviz.uncertainty.covariance import linear

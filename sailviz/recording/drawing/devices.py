@@ -1,0 +1,128 @@
+"""The kinds of craft and how each is drawn: one record a kind. A new device is drawn by one function and one record.
+
+Frame: +z is the sail's normal, away from the Sun; of a tether, from its tip to the satellite; of a thruster, the
+thrust.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from sailviz.recording.drawing import style
+from sailviz.recording.drawing.craft import CraftDrawing
+from sailviz.recording.drawing.log import Picture, f4
+from sailviz.recording.drawing.sail_close_up import SailCloseUp
+from sailviz.recording.drawing.style import points
+from sailviz.recording.drawing.tether_close_up import TetherCloseUp
+from sailviz.shapes import sails, tethers
+from sailviz.shapes.primitives import circle
+
+
+def log_square_sail(picture: Picture, path: str, near: bool) -> None:
+    """Film seen from both sides: the sunward side is the back of a mesh whose front is the dark one."""
+    film = sails.film()
+    picture.log_mesh(f"{path}/film_sun", film, style.FILM_SUN, side="back")
+    picture.log_mesh(f"{path}/film_dark", film, style.FILM_DARK, side="front")
+    picture.log_mesh(f"{path}/booms", sails.booms(), style.BOOM)
+    picture.log_mesh(f"{path}/bus", sails.bus(), style.BUS)
+    picture.log_mesh(f"{path}/vanes", sails.vanes(), style.NORMAL, shaded=False)
+    if near:
+        lifts = [[0, 0, side * 0.004] for side in (-1, 1)]  # off the film, or the lines tear
+        strips = [seam + lift for seam in sails.seams() for lift in lifts]
+        picture.log_lines(f"{path}/seams", strips, style.SEAM, style.WIDTH["seam"])
+
+
+def log_electric_sail(picture: Picture, path: str, near: bool) -> None:
+    """A wheel of tethers with its charged sheath. 24 are drawn, 16 from afar, however many there are."""
+    count = 24 if near else 16
+    out, turns = tethers.spokes(count), tethers.spoke_quaternions(count)
+    picture.log_lines(f"{path}/tethers", [[0.03 * d, d] for d in out], style.TETHER, 0.9 if near else 0.7)
+    picture.log_lines(f"{path}/rim", [circle()], style.dim(style.TETHER, 0.7), 0.7 if near else 0.55)
+    picture.log_mesh(f"{path}/hub", tethers.wheel_hub(), style.BUS)
+    if near:
+        picture.log_mesh(f"{path}/tips", tethers.remote_unit(), style.BOOM)
+        picture.log_static(f"{path}/tips", rr.InstancePoses3D(translations=f4(out), quaternions=f4(turns)))
+    picture.log_static(
+        f"{path}/sheath",
+        rr.GaussianSplats3D(
+            f4(0.52 * out),
+            scales=[[0.21, 0.008, 0.008]] * count,
+            quaternions=f4(turns),
+            colors=[[*style.SHEATH, 120]] * count,
+        ),
+    )
+
+
+def log_satellite(picture: Picture, path: str, near: bool) -> None:
+    """A small satellite with two panels."""
+    picture.log_mesh(f"{path}/bus", tethers.satellite_bus(), style.BOOM)
+    picture.log_mesh(f"{path}/panels", tethers.satellite_panels(), style.PANEL)
+
+
+def log_thruster(picture: Picture, path: str, near: bool) -> None:
+    """A bus with panels, a nozzle and the plume, which leaves against the thrust."""
+    picture.log_mesh(f"{path}/bus", tethers.thruster_bus(), style.BUS)
+    picture.log_mesh(f"{path}/panels", tethers.thruster_panels(), style.PANEL)
+    picture.log_mesh(f"{path}/nozzle", tethers.thruster_nozzle(), style.BOOM)
+    along = -(0.42 + 0.13 * np.arange(5))
+    widths = 0.05 + 0.022 * np.arange(5)
+    picture.log_static(
+        f"{path}/plume",
+        rr.GaussianSplats3D(
+            [[0, 0, z] for z in along],
+            scales=[[w, w, 0.10] for w in widths],
+            colors=[[*style.PLUME, alpha] for alpha in (150, 110, 80, 55, 35)],
+        ),
+    )
+
+
+def log_dot(picture: Picture, path: str, near: bool) -> None:
+    """A craft without a device."""
+    picture.log_static(
+        f"{path}/dot", rr.Points3D([[0, 0, 0]], radii=points(9.0 if near else 4.5), colors=[style.CRAFT])
+    )
+
+
+CRAFT = {
+    "solar-sail": CraftDrawing(
+        log_shape=log_square_sail,
+        close_up=SailCloseUp,
+        size=0.24,
+        close_size=15.0,
+        true_size=lambda craft: craft.side,
+        facing=True,
+        normal_length=13.0,
+    ),
+    "electric-sail": CraftDrawing(
+        log_shape=log_electric_sail,
+        close_up=SailCloseUp,
+        true_size=lambda craft: craft.tether_length,
+        glow="shape/sheath",
+        slanted=True,
+        flow=("solar wind", style.WIND),
+    ),
+    "plasma-brake": CraftDrawing(
+        log_shape=log_satellite,
+        close_up=TetherCloseUp,
+        size_over_planet=0.14,
+        close_size=5.0,
+        true_size=lambda craft: craft.tether_length,
+        tether=True,
+        glow="tether/sheath",
+        has_angles=False,
+        steers=False,
+        descends=True,
+        force="Drag",
+        lane="brake",
+    ),
+    "thruster": CraftDrawing(
+        log_shape=log_thruster,
+        close_up=SailCloseUp,
+        close_size=8.0,
+        close_name="Thruster",
+        glow="shape/plume",
+        normal_length=None,
+    ),
+    "none": CraftDrawing(log_shape=log_dot, close_up=SailCloseUp, size=0.0, close_size=1.0, steers=False),
+}

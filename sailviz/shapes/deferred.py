@@ -1,0 +1,79 @@
+"""Modules that a library names when it is imported, loaded only when one of their names is first used.
+
+Of the time that `import trimesh` takes, four fifths go into parts of scipy that none of our shapes need: convex hulls,
+minimizers, searches for neighbours. They cost as much as a whole flight.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib import import_module
+from types import ModuleType
+from typing import Any
+
+
+class Deferred:
+    """Stands for one name of a module until it is used."""
+
+    def __init__(self, module: str, name: str, library: str):
+        self._source = module, name, library
+
+    def _real(self) -> Any:
+        module, name, library = self._source
+        load(module, library)
+        return getattr(import_module(module), name)
+
+    def __call__(self, *values: Any, **options: Any) -> Any:
+        return self._real()(*values, **options)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._real(), name)
+
+    def __instancecheck__(self, instance: object) -> bool:
+        return isinstance(instance, self._real())
+
+
+class DeferredModule(ModuleType):
+    """Stands for a module while a library is imported, and in that library until one of its names is used."""
+
+    def __init__(self, module: str, library: str):
+        super().__init__(module)
+        self._library = library
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("__"):
+            raise AttributeError(name)
+        return Deferred(self.__name__, name, self._library)
+
+
+@contextmanager
+def deferred(library: str, *modules: str) -> Iterator[None]:
+    """Inside this context a library is imported that names `modules`; those not yet loaded are not loaded by it.
+
+    They are loaded when the library first uses one of their names. Nobody else ever sees what stands for them, save a
+    thread that imports one of them at that very moment.
+    """
+    waiting = [module for module in modules if module not in sys.modules]
+    for module in waiting:
+        sys.modules[module] = DeferredModule(module, library)
+    try:
+        yield
+    finally:
+        for module in waiting:
+            if isinstance(sys.modules.get(module), DeferredModule):
+                del sys.modules[module]
+
+
+def load(module: str, library: str) -> None:
+    """Import a module and put its names where the library holds what stands for them."""
+    real = import_module(module)
+    for name, part in list(sys.modules.items()):
+        if name != library and not name.startswith(f"{library}."):
+            continue
+        for key, value in list(vars(part).items()):
+            if isinstance(value, DeferredModule) and value.__name__ == module:
+                setattr(part, key, real)
+            elif type(value) is Deferred and value._source[0] == module:
+                setattr(part, key, getattr(real, value._source[1]))

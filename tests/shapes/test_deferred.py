@@ -1,0 +1,50 @@
+"""Shapes load trimesh without the parts of scipy that they do not need, and nobody is the poorer for it."""
+
+import subprocess
+import sys
+
+
+def fresh(script):
+    """What a script prints in a new interpreter."""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    return done.stdout.split()
+
+
+SHAPES = "import sys\nfrom sailviz.shapes import planets, sails, tethers\n"
+PARTS = ("scipy.spatial", "scipy.optimize", "scipy.ndimage")
+
+
+def test_drawing_every_shape_loads_none_of_what_is_put_off():
+    script = SHAPES + (
+        "sails.film().vertex_normals, sails.booms(), sails.vanes(), tethers.wheel_hub(), planets.globe(b'')\n"
+        f"print(*[m for m in {PARTS} if m in sys.modules] or ['none'])"
+    )
+    assert fresh(script) == ["none"]
+
+
+def test_trimesh_finds_what_was_put_off_when_it_needs_it():
+    script = SHAPES + (
+        "import trimesh\n"
+        "hull = tethers.satellite_panels().convex_hull\n"
+        "print(hull.is_watertight, trimesh.convex.QhullError.__name__, trimesh.base.cKDTree.__name__)\n"
+        "print('scipy.spatial' in sys.modules, 'scipy.optimize' in sys.modules)\n"
+        "print(round(trimesh.creation.icosphere().bounding_sphere.volume, 1))"
+    )
+    assert fresh(script) == ["True", "QhullError", "cKDTree", "True", "False", "4.2"]
+
+
+def test_others_that_import_scipy_get_scipy():
+    script = SHAPES + (
+        "from scipy import optimize, spatial\n"
+        "print(optimize.brentq(lambda x: x - 2, 0, 5), spatial.cKDTree([[0.0], [3.0]]).query([[2.0]])[1][0])\n"
+        "print(type(sys.modules['scipy.spatial']).__name__)"
+    )
+    assert fresh(script) == ["2.0", "1", "module"]
+
+
+def test_what_was_loaded_before_is_not_put_off():
+    script = (
+        "import sys, scipy.spatial\nbefore = scipy.spatial\n" + SHAPES + "import trimesh\n"
+        "print(sys.modules['scipy.spatial'] is before, trimesh.base.cKDTree is before.cKDTree)"
+    )
+    assert fresh(script) == ["True", "True"]

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numba
 from numba.core import sigutils
 from numba.core.ccallback import CFunc
 
 # No reassociation: compensated sums and NaN must mean what they say. Contraction (fused multiply-add) is safe.
-_OPTIONS = {"error_model": "numpy", "fastmath": {"contract", "nsz"}, "nogil": True}
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract", "nsz"}, "nogil": True}
 
 
+_njit: Any = numba.njit  # some of the options are in no stub
 _PACKAGE = Path(__file__).parent
 _ROOMS = ("design", "environment", "propagate", "propulsion", "simulation", "steering", "uncertainty")  # that compile
 _SOURCES = tuple(
@@ -22,7 +25,7 @@ _SOURCES = tuple(
 )
 
 
-def compiled(function):
+def compiled(function: Callable[..., Any]) -> Any:
     """Compile a module-level function of scalars and arrays on first use and keep the machine code on disk.
 
     numba honours NUMBA_CACHE_DIR, then tries the package's __pycache__, then the user's cache folder; where none of
@@ -31,15 +34,15 @@ def compiled(function):
     calls.
     """
     try:
-        dispatcher = numba.njit(cache=True, **_OPTIONS)(function)
+        dispatcher = _njit(cache=True, **_OPTIONS)(function)
     except RuntimeError:  # "no locator available": nowhere to write
-        return numba.njit(**_OPTIONS)(function)
+        return _njit(**_OPTIONS)(function)
     _stamp(dispatcher)
     return dispatcher
 
 
 @cache
-def cached_c_function(function, signature):
+def cached_c_function(function: Callable[..., Any], signature: Any) -> CFunc:
     """A C function (numba.cfunc), its machine code kept on disk under the same rules as that of `compiled`."""
     options = {key: value for key, value in _OPTIONS.items() if key != "nogil"}
     made = CFunc(function, sigutils.normalize_signature(signature), {}, options)
@@ -52,28 +55,28 @@ def cached_c_function(function, signature):
     return made
 
 
-def _stamp(made):
+def _stamp(made: Any) -> None:
     file = getattr(made._cache, "_cache_file", None)
-    if hasattr(file, "_source_stamp"):
+    if file is not None and hasattr(file, "_source_stamp"):
         file._source_stamp = (file._source_stamp, _SOURCES)
 
 
-def inlined(function):
+def inlined(function: Callable[..., Any]) -> Any:
     """Like `compiled`, for small functions that only other compiled functions call; the optimiser merges them.
 
     They may read and write arrays but not create any: compiled without reference counting, which would otherwise
     cost as much as the physics (134 ns against 71 ns for one right-hand side, numba 0.68).
     """
-    return numba.njit(_nrt=False, forceinline=True, **_OPTIONS)(function)
+    return _njit(_nrt=False, forceinline=True, **_OPTIONS)(function)
 
 
-def called(function):
+def called(function: Callable[..., Any]) -> Any:
     """Like `inlined`, for functions called from so many places that copies of them would only lengthen the
     compilation."""
-    return numba.njit(_nrt=False, **_OPTIONS)(function)
+    return _njit(_nrt=False, **_OPTIONS)(function)
 
 
-def is_compiled(function) -> bool:
+def is_compiled(function: Any) -> bool:
     """Whether the machine code of a `compiled` function is in memory or on disk already. A guess: it only decides
     whether a person is told to wait."""
     if function.signatures:

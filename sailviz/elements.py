@@ -3,8 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 CIRCULAR = 1e-11  # eccentricity below which the apse line is rounding noise
 EQUATORIAL = 1e-11  # sine of the inclination below which the node is rounding noise
@@ -24,7 +28,7 @@ class Elements:
     true_anomaly: np.ndarray
 
 
-def elements(position, velocity, mu) -> Elements:
+def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements:
     """Osculating elements of a state. position m, velocity m/s : (..., 3), mu m3/s2.
 
     Conventions where an angle loses its meaning: on an equatorial orbit the node is the x axis (raan 0), on a
@@ -54,7 +58,15 @@ def elements(position, velocity, mu) -> Elements:
     return Elements(a, e, inclination, np.mod(raan, 2 * np.pi), np.mod(argument, 2 * np.pi), anomaly)
 
 
-def state(semi_major_axis, eccentricity, inclination, raan, argument, true_anomaly, mu):
+def state(
+    semi_major_axis: ArrayLike,
+    eccentricity: ArrayLike,
+    inclination: ArrayLike,
+    raan: ArrayLike,
+    argument: ArrayLike,
+    true_anomaly: ArrayLike,
+    mu: float,
+) -> tuple[np.ndarray, np.ndarray]:
     """Position m and velocity m/s, each (..., 3), of elements in m and rad; negative semi-major axis for a hyperbola.
 
     Source: Bate, Mueller and White (1971), section 2.5.
@@ -65,7 +77,7 @@ def state(semi_major_axis, eccentricity, inclination, raan, argument, true_anoma
     u = nu + w
     cos_node, sin_node, cos_i, sin_i = np.cos(node), np.sin(node), np.cos(i), np.sin(i)
 
-    def in_plane(x, y):  # x along the node, y ahead of it
+    def in_plane(x: np.ndarray, y: np.ndarray) -> np.ndarray:  # x along the node, y ahead of it
         return np.stack([x * cos_node - y * sin_node * cos_i, x * sin_node + y * cos_node * cos_i, y * sin_i], axis=-1)
 
     speed = np.sqrt(mu / p)
@@ -74,7 +86,7 @@ def state(semi_major_axis, eccentricity, inclination, raan, argument, true_anoma
     return position, velocity
 
 
-def mean_semi_major_axis(position, velocity, mu, oblateness):
+def mean_semi_major_axis(position: ArrayLike, velocity: ArrayLike, mu: float, oblateness: float) -> np.ndarray:
     """Semi-major axis (...,) m without the swing that an oblate body forces on it within a revolution.
 
     position m, velocity m/s : (..., 3), mu m3/s2, oblateness = J2 R^2 in m2. First order in J2, some ten metres in low
@@ -89,10 +101,11 @@ def mean_semi_major_axis(position, velocity, mu, oblateness):
     sin2_i = 1.0 - h[..., 2] ** 2 / h2
     now = (a / r) ** 3 * (1.0 - 3.0 * (r_vec[..., 2] / r) ** 2)
     mean = (1.0 - 1.5 * sin2_i) * (mu * a / h2) ** 1.5
-    return a - oblateness / a * (now - mean)
+    found: np.ndarray = a - oblateness / a * (now - mean)
+    return found
 
 
-def osculating_radius(mean_radius, inclination, argument_of_latitude, oblateness):
+def osculating_radius(mean_radius: float, inclination: float, argument_of_latitude: float, oblateness: float) -> float:
     """Radius m of the osculating circle whose mean semi-major axis about an oblate body is mean_radius.
 
     inclination, argument_of_latitude rad; oblateness = J2 R^2 in m2. First order in J2, as `mean_semi_major_axis`.

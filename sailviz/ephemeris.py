@@ -7,11 +7,19 @@ from __future__ import annotations
 
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sailviz import elements as orbital
 from sailviz.constants import AU, DAY, MU_SUN, YEAR
+
+if TYPE_CHECKING:
+    from datetime import datetime
+
+    from numpy.typing import ArrayLike
+
+    Epoch = np.datetime64 | datetime | str  # UTC
 
 J2000 = np.datetime64("2000-01-01T12:00:00", "ns")
 CENTURY = 36_525 * DAY
@@ -48,21 +56,23 @@ _MEAN = {
 PLANETS = tuple(_MEAN)
 
 
-def _seconds_since_j2000(epoch: np.datetime64) -> float:
-    return float((np.datetime64(epoch, "ns") - J2000) / np.timedelta64(1, "ns")) * 1e-9
+def seconds_since_j2000(epoch: Epoch) -> float:
+    """Seconds from J2000 to an epoch (UTC), days of 86,400 s."""
+    moment = np.asarray(epoch, "datetime64[ns]")
+    return float((moment - J2000) / np.timedelta64(1, "ns")) * 1e-9
 
 
-def days_since_j2000(epoch) -> float:
+def days_since_j2000(epoch: Epoch) -> float:
     """Days of 86,400 s from J2000 to an epoch (np.datetime64, UTC)."""
-    return _seconds_since_j2000(epoch) / DAY
+    return seconds_since_j2000(epoch) / DAY
 
 
-def decimal_year(epoch) -> float:
+def decimal_year(epoch: Epoch) -> float:
     """The epoch as a Julian year, e.g. 2019.96."""
-    return 2000.0 + _seconds_since_j2000(epoch) / YEAR
+    return 2000.0 + seconds_since_j2000(epoch) / YEAR
 
 
-def planet_elements(name, seconds):
+def planet_elements(name: str, seconds: ArrayLike) -> tuple[np.ndarray, ...]:
     """(a m, e, i, raan, argument, mean anomaly rad) of a planet, each (n,), at seconds (n,) after J2000."""
     values, rates = (np.array(row) for row in _MEAN[name])
     a, e, i, longitude, perihelion, node = values[:, None] + rates[:, None] * np.atleast_1d(seconds) / CENTURY
@@ -70,8 +80,11 @@ def planet_elements(name, seconds):
     return a * AU, e, *angles
 
 
-def _eccentric_anomaly(mean, e):
-    """Kepler's equation by Newton from Danby's start; planets need three or four iterations."""
+def eccentric_anomaly(mean: np.ndarray, e: np.ndarray | float) -> np.ndarray:
+    """Eccentric anomaly (n,) rad, within half a turn of 0, of a mean anomaly (n,) rad.
+
+    Kepler's equation by Newton from Danby's start; planets need three or four iterations.
+    """
     mean = np.remainder(mean + np.pi, 2 * np.pi) - np.pi
     anomaly = mean + 0.85 * np.sign(np.sin(mean)) * e
     for _ in range(10):
@@ -82,7 +95,7 @@ def _eccentric_anomaly(mean, e):
     return anomaly
 
 
-def planet_position(name, epoch, time, source="mean-elements"):
+def planet_position(name: str, epoch: Epoch, time: ArrayLike, source: str = "mean-elements") -> np.ndarray:
     """Heliocentric position (n, 3) m, ecliptic of J2000, of a planet in PLANETS at times (n,) s after the epoch (UTC).
 
     source : "mean-elements", off by up to 43, 30, 20, 55, 206 and 277 arcsec from Mercury to Saturn (measured
@@ -91,9 +104,9 @@ def planet_position(name, epoch, time, source="mean-elements"):
     of planets with moons.
     """
     if source == "de421":
-        return _de421(name, _seconds_since_j2000(epoch) + np.asarray(time, dtype=float))
-    a, e, i, node, argument, mean = planet_elements(name, _seconds_since_j2000(epoch) + np.asarray(time, dtype=float))
-    half = _eccentric_anomaly(mean, e) / 2
+        return _de421(name, seconds_since_j2000(epoch) + np.asarray(time, dtype=float))
+    a, e, i, node, argument, mean = planet_elements(name, seconds_since_j2000(epoch) + np.asarray(time, dtype=float))
+    half = eccentric_anomaly(mean, e) / 2
     anomaly = 2 * np.arctan2(np.sqrt(1 + e) * np.sin(half), np.sqrt(1 - e) * np.cos(half))
     return orbital.state(a, e, i, node, argument, anomaly, MU_SUN)[0]
 
@@ -104,20 +117,20 @@ OBLIQUITY_J2000 = np.radians(84381.448 / 3600)  # rad, IAU 1976, the obliquity o
 
 
 @cache
-def _kernel():
+def _kernel() -> Any:
     """JPL's DE421 (W. M. Folkner et al., IPN Progress Report 42-178, 2009), the copy that the package skyfield-data
     carries."""
     from importlib.util import find_spec
 
     home = find_spec("skyfield_data")
-    if home is None or find_spec("jplephem") is None:
+    if home is None or home.origin is None or find_spec("jplephem") is None:
         raise ModuleNotFoundError('the ephemeris DE421 needs the extra "ephemeris": pip install "sailviz[ephemeris]"')
     from jplephem.spk import SPK
 
     return SPK.open(str(Path(home.origin).parent / "data" / "de421.bsp"))
 
 
-def _de421(name, seconds):
+def _de421(name: str, seconds: np.ndarray) -> np.ndarray:
     """Heliocentric position (n, 3) m, ecliptic of J2000, at seconds (n,) of UTC after J2000."""
     kernel = _kernel()
     days = 2_451_545.0 + (np.atleast_1d(seconds) + TT_MINUS_UTC) / DAY
@@ -129,13 +142,15 @@ def _de421(name, seconds):
     return np.column_stack([x, c * y + s * z, c * z - s * y])
 
 
-def planet_ellipse(name, epoch=None) -> orbital.Elements:
+def planet_ellipse(name: str, epoch: Epoch | None = None) -> orbital.Elements:
     """The planet's orbit as mean elements at the epoch (J2000 without one), scalars; the true anomaly is left 0."""
-    seconds = 0.0 if epoch is None else _seconds_since_j2000(epoch)
-    return orbital.Elements(*(float(value[0]) for value in planet_elements(name, seconds)[:5]), 0.0)
+    seconds = 0.0 if epoch is None else seconds_since_j2000(epoch)
+    a, e, i, raan, argument, _ = planet_elements(name, seconds)
+    scalars: list[Any] = [*(float(value[0]) for value in (a, e, i, raan, argument)), 0.0]
+    return orbital.Elements(*scalars)
 
 
-def planet_orbit(name, epoch=None, points=361):
+def planet_orbit(name: str, epoch: Epoch | None = None, points: int = 361) -> np.ndarray:
     """The planet's orbit as a closed curve (points, 3) m, with its elements at the epoch (J2000 without one)."""
     e = planet_ellipse(name, epoch)
     turn = np.linspace(0, 2 * np.pi, points)
@@ -149,12 +164,12 @@ SUN_OBLIQUITY = (23.439, -0.0000004)
 SUN_CENTRE = (1.915, 0.020)  # deg, on sin g and sin 2g
 
 
-def sun_position(epoch, time):
+def sun_position(epoch: Epoch, time: ArrayLike) -> np.ndarray:
     """Geocentric position (n, 3) m of the Sun, equator of date, at times (n,) s after the epoch.
 
     Source: low-precision formulae of the Astronomical Almanac, section C: 0.01 deg between 1950 and 2050.
     """
-    n = (_seconds_since_j2000(epoch) + np.asarray(time, dtype=float)) / DAY
+    n = (seconds_since_j2000(epoch) + np.asarray(time, dtype=float)) / DAY
     g, mean_longitude, obliquity = (
         np.radians(start + rate * n) for start, rate in (SUN_MEAN_ANOMALY, SUN_MEAN_LONGITUDE, SUN_OBLIQUITY)
     )
@@ -162,26 +177,28 @@ def sun_position(epoch, time):
     longitude = mean_longitude + first * np.sin(g) + second * np.sin(2 * g)
     distance = AU * (1.00014 - 0.01671 * np.cos(g) - 0.00014 * np.cos(2 * g))
     direction = [np.cos(longitude), np.cos(obliquity) * np.sin(longitude), np.sin(obliquity) * np.sin(longitude)]
-    return (distance * np.array(direction)).T
+    found: np.ndarray = (distance * np.array(direction)).T
+    return found
 
 
-def earth_rotation_angle(epoch, time=0.0):
+def earth_rotation_angle(epoch: Epoch, time: ArrayLike = 0.0) -> np.ndarray:
     """Earth rotation angle, rad in [0, 2 pi), at times (n,) s after the epoch, with UT1 = UTC (below 0.004 deg).
 
     Source: IAU 2000 resolution B1.8. Counted from the celestial intermediate origin; maps and frames of the equinox
     want `greenwich_sidereal_time`.
     """
-    days = _seconds_since_j2000(epoch) / DAY + np.asarray(time, dtype=float) / DAY
+    days = seconds_since_j2000(epoch) / DAY + np.asarray(time, dtype=float) / DAY
     return np.remainder(2 * np.pi * (np.remainder(days, 1.0) + 0.7790572732640 + 0.00273781191135448 * days), 2 * np.pi)
 
 
-def greenwich_sidereal_time(epoch, time=0.0):
+def greenwich_sidereal_time(epoch: Epoch, time: ArrayLike = 0.0) -> np.ndarray:
     """Right ascension, rad in [0, 2 pi), of the Greenwich meridian, mean equinox of date, in which `sun_position`
     speaks too, at times (n,) s after the epoch.
 
     Source: the precession that N. Capitaine et al., Astron. Astrophys. 412, 567 (2003) add to the Earth rotation angle,
     without its terms below 0.1 arcsec in this century.
     """
-    centuries = (_seconds_since_j2000(epoch) + np.asarray(time, dtype=float)) / CENTURY
+    centuries = (seconds_since_j2000(epoch) + np.asarray(time, dtype=float)) / CENTURY
     arcseconds = 0.014506 + (4612.156534 + 1.3915817 * centuries) * centuries
-    return np.remainder(earth_rotation_angle(epoch, time) + np.radians(arcseconds / 3600), 2 * np.pi)
+    found: np.ndarray = np.remainder(earth_rotation_angle(epoch, time) + np.radians(arcseconds / 3600), 2 * np.pi)
+    return found

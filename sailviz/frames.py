@@ -5,17 +5,23 @@ RTN, the orbital frame: r_hat from the central body, t_hat = h_hat x r_hat, h_ha
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
-def unit(vectors):
+
+def unit(vectors: ArrayLike) -> np.ndarray:
     """Vectors of length one. vectors : (..., 3) -> (..., 3); a zero vector stays zero."""
     vectors = np.asarray(vectors, dtype=float)
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+    found: np.ndarray = np.divide(vectors, length, out=np.zeros_like(vectors), where=length > 0)
+    return found
 
 
-def rtn(position, velocity):
+def rtn(position: ArrayLike, velocity: ArrayLike) -> np.ndarray:
     """Axes of the orbital frame. position m, velocity m/s : (..., 3) -> R_rtn_to_inertial (..., 3, 3), axes as columns.
 
     Without angular momentum (a craft at rest, or falling straight down) the orbit has no plane: t_hat is then the
@@ -34,17 +40,19 @@ def rtn(position, velocity):
     return np.stack([r_hat, t_hat, np.cross(r_hat, t_hat)], axis=-1)
 
 
-def to_frame(axes, vectors):
+def to_frame(axes: ArrayLike, vectors: ArrayLike) -> np.ndarray:
     """Components of inertial vectors along the columns of axes. (..., 3, 3), (..., 3) -> (..., 3)."""
-    return np.einsum("...ji,...j->...i", axes, vectors)
+    found: np.ndarray = np.einsum("...ji,...j->...i", np.asarray(axes), np.asarray(vectors))
+    return found
 
 
-def from_frame(axes, components):
+def from_frame(axes: ArrayLike, components: ArrayLike) -> np.ndarray:
     """Inertial vectors from components along the columns of axes. (..., 3, 3), (..., 3) -> (..., 3)."""
-    return np.einsum("...ij,...j->...i", axes, components)
+    found: np.ndarray = np.einsum("...ij,...j->...i", np.asarray(axes), np.asarray(components))
+    return found
 
 
-def body_axes(normal, hint):
+def body_axes(normal: ArrayLike, hint: np.ndarray) -> np.ndarray:
     """Frame of a sail: z along the normal, x as close to `hint` as possible. (n, 3), (n, 3) -> (n, 3, 3), columns."""
     z = unit(normal)
     x = hint - np.sum(hint * z, axis=-1, keepdims=True) * z
@@ -55,7 +63,7 @@ def body_axes(normal, hint):
     return np.stack([x, np.cross(z, x), z], axis=-1)
 
 
-def quaternion(axes):
+def quaternion(axes: ArrayLike) -> np.ndarray:
     """Unit quaternions (x, y, z, w) of rotation matrices, w >= 0. (..., 3, 3) -> (..., 4).
 
     Shepperd's method (J. Guidance and Control 1, 1978): the largest of the four components is computed first.
@@ -78,10 +86,13 @@ def quaternion(axes):
     best = np.argmax(squares, axis=-1)
     q = np.take_along_axis(table, best[..., None, None], axis=-2)[..., 0, :]
     q = q / np.linalg.norm(q, axis=-1, keepdims=True)
-    return np.where(q[..., 3:4] < 0, -q, q)
+    found: np.ndarray = np.where(q[..., 3:4] < 0, -q, q)
+    return found
 
 
-def pitch_cone_clock(axes, normal, thrust):
+def pitch_cone_clock(
+    axes: ArrayLike, normal: ArrayLike, thrust: ArrayLike
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Attitude angles, rad. axes (n, 3, 3) RTN columns, normal and thrust (n, 3) inertial -> pitch, cone, clock,
     each (n,).
 
@@ -125,7 +136,8 @@ def precession(centuries: float) -> np.ndarray:
     zeta = 2.650545 + t * (2306.083227 + t * (0.2988499 + t * (0.01801828 - t * (5.971e-6 + t * 3.173e-7))))
     z = -2.650545 + t * (2306.077181 + t * (1.0927348 + t * (0.01826837 - t * (2.8596e-5 + t * 2.904e-7))))
     theta = t * (2004.191903 - t * (0.4294934 + t * (0.04182264 + t * (7.089e-6 + t * 1.274e-7))))
-    return _turn_z(-z * _ARCSECOND) @ _turn_y(theta * _ARCSECOND) @ _turn_z(-zeta * _ARCSECOND)
+    found: np.ndarray = _turn_z(-z * _ARCSECOND) @ _turn_y(theta * _ARCSECOND) @ _turn_z(-zeta * _ARCSECOND)
+    return found
 
 
 def _turn_z(angle: float) -> np.ndarray:

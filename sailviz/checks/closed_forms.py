@@ -33,7 +33,7 @@ def kepler(start: Run) -> Motion:
         a = 1 / alpha
         e_cos, e_sin = 1 - r / a, sigma / np.sqrt(a)
         e, first = np.hypot(e_cos, e_sin), np.arctan2(e_sin, e_cos)
-        anomaly = ephemeris._eccentric_anomaly(first - e_sin + np.sqrt(mu / a**3) * time, e)
+        anomaly = ephemeris.eccentric_anomaly(first - e_sin + np.sqrt(mu / a**3) * time, e)
         c, s = np.cos(anomaly - first), np.sin(anomaly - first)
         return 1 - a / r * (1 - c), a * sigma / np.sqrt(mu) * (1 - c) + r * np.sqrt(a / mu) * s
 

@@ -6,6 +6,7 @@ A Run is whole or a block of consecutive rows of one; `join` puts blocks togethe
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -99,10 +100,11 @@ class EnsembleStatistics:
     histogram_edges: np.ndarray = field(default_factory=lambda: np.zeros(2))  # (b + 1,) m, distance from the nominal
     histogram: np.ndarray = field(default_factory=lambda: np.zeros((1, 1)))  # (n, b) shares
 
-    def places(self, states) -> np.ndarray:
+    def places(self, states: np.ndarray) -> np.ndarray:
         """Inertial positions (..., 3) m of cylindrical states (..., 3 or 6)."""
         rho, angle, height = np.moveaxis(np.asarray(states)[..., :3], -1, 0)
-        return np.stack([rho * np.cos(angle), rho * np.sin(angle), height], axis=-1) @ self.axes
+        found: np.ndarray = np.stack([rho * np.cos(angle), rho * np.sin(angle), height], axis=-1) @ self.axes
+        return found
 
 
 @dataclass(frozen=True)
@@ -122,7 +124,7 @@ class Setting:
     references: tuple[Reference, ...]
     parameters: tuple[tuple[str, str], ...]  # words and values for the description panel, e.g. ("pitch", "35.26 deg")
     text: str  # the scene file, "" for a trajectory that came without one
-    resolved: dict  # every value of the scene, SI
+    resolved: dict[str, Any]  # every value of the scene, SI
     versions: dict[str, str]
     accuracy: str  # one sentence on how the numbers were made
     identity: str  # hash of the resolved scene, hexadecimal
@@ -216,7 +218,7 @@ def join(blocks: list[Run]) -> Run:
     if len(blocks) == 1:
         return blocks[0]
 
-    def stack(parts):
+    def stack(parts: list[Any]) -> Any:
         if isinstance(parts[0], np.ndarray):
             return np.concatenate(parts)
         if isinstance(parts[0], dict):

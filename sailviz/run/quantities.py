@@ -1,58 +1,68 @@
-"""What each quantity of quantities.py is: a function of a Run giving one value per row, in SI."""
+"""What each quantity of scene/quantities.py is: a function of a Run giving one value per row, in SI."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
+from sailviz.elements import Elements
 from sailviz.run.arrays import Run
 
-
-def _distance(run: Run):
-    return np.linalg.norm(run.position, axis=1)
+Value = Callable[[Run], np.ndarray]  # one number per row, SI
 
 
-def _energy(run: Run):
-    return np.sum(run.velocity**2, axis=1) / 2 - run.setting.body.mu / _distance(run)
+def _distance(run: Run) -> np.ndarray:
+    found: np.ndarray = np.linalg.norm(run.position, axis=1)
+    return found
 
 
-def _momentum(run: Run):
-    return np.linalg.norm(np.cross(run.position, run.velocity), axis=1)
+def _energy(run: Run) -> np.ndarray:
+    found: np.ndarray = np.sum(run.velocity**2, axis=1) / 2 - run.setting.body.mu / _distance(run)
+    return found
 
 
-def _flight_path(run: Run):
+def _momentum(run: Run) -> np.ndarray:
+    found: np.ndarray = np.linalg.norm(np.cross(run.position, run.velocity), axis=1)
+    return found
+
+
+def _flight_path(run: Run) -> np.ndarray:
     radial = np.sum(run.position * run.velocity, axis=1) / _distance(run)
-    return np.arctan2(radial, _momentum(run) / _distance(run))
+    found: np.ndarray = np.arctan2(radial, _momentum(run) / _distance(run))
+    return found
 
 
-def _longitude(run: Run):
+def _longitude(run: Run) -> np.ndarray:
     """Unwrapped, so that it counts revolutions; from the first row of the run or block."""
     return np.unwrap(np.arctan2(run.position[:, 1], run.position[:, 0]))
 
 
-def _closed_form_error(run: Run):
+def _closed_form_error(run: Run) -> np.ndarray:
     raise TypeError("the error against a closed form takes the closed form too: expectations.py knows it")
 
 
-def _above_surface(distance):
+def _above_surface(distance: Callable[[Elements], np.ndarray]) -> Value:
     """Of a length from the centre as a function of the elements, its height over the central body's radius."""
     return lambda run: distance(run.elements) - run.setting.body.radius
 
 
-def _acted(name: str):
+def _acted(name: str) -> Value:
     """A column of the environment; NaN, which no expectation accepts, where the run has none."""
     return lambda run: np.asarray(run.environment.get(name, np.full(len(run), np.nan)), float)
 
 
-def _mean_altitude(run: Run):
+def _mean_altitude(run: Run) -> np.ndarray:
     """Without the swing that an oblate planet gives it, where the run knows that; else of the semi-major axis."""
     return run.environment.get("mean_altitude_m", run.elements.semi_major_axis - run.setting.body.radius)
 
 
-def _radial_speed(run: Run):
-    return np.sum(run.position * run.velocity, axis=1) / _distance(run)
+def _radial_speed(run: Run) -> np.ndarray:
+    found: np.ndarray = np.sum(run.position * run.velocity, axis=1) / _distance(run)
+    return found
 
 
-VALUES = {
+VALUES: dict[str, Value] = {
     "time": lambda run: run.time,
     "radius": _distance,
     "altitude": lambda run: _distance(run) - run.setting.body.radius,

@@ -9,7 +9,13 @@ others     linear                                           error h^2 / 8 x''
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
 import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 TURN = 2 * np.pi
 
@@ -19,7 +25,9 @@ def is_angle(name: str) -> bool:
     return name.endswith("_rad")
 
 
-def at(times, name: str, grid, values, siblings=None):
+def at(
+    times: np.ndarray, name: str, grid: ArrayLike, values: ArrayLike, siblings: Mapping[str, np.ndarray] | None = None
+) -> np.ndarray:
     """Values (n, ...) of the column `name`, given at `grid` (n,) s, increasing, at other times (m,) within it.
 
     siblings : the other columns of the entity, among which a position finds its velocity.
@@ -56,17 +64,20 @@ def at(times, name: str, grid, values, siblings=None):
     return np.where(known.reshape(shape), values[exact], found)
 
 
-def hermite(s, h, x0, x1, v0, v1):
+def hermite(s: np.ndarray, h: np.ndarray, x0: np.ndarray, x1: np.ndarray, v0: np.ndarray, v1: np.ndarray) -> np.ndarray:
     """The cubic with values x and slopes v at both ends of an interval of length h, at its fraction s."""
-    return x0 * (1 + 2 * s) * (1 - s) ** 2 + x1 * s * s * (3 - 2 * s) + h * s * (1 - s) * (v0 * (1 - s) - v1 * s)
+    found: np.ndarray = (
+        x0 * (1 + 2 * s) * (1 - s) ** 2 + x1 * s * s * (3 - 2 * s) + h * s * (1 - s) * (v0 * (1 - s) - v1 * s)
+    )
+    return found
 
 
-def through_four(times, grid, values, left):
+def through_four(times: np.ndarray, grid: np.ndarray, values: np.ndarray, left: np.ndarray) -> np.ndarray:
     """The cubic through the two rows on either side (at the ends: the four nearest), by Lagrange's formula."""
     first = np.clip(left - 1, 0, len(grid) - 4)
     rows = first[:, None] + np.arange(4)
     x = grid[rows]  # (m, 4)
-    found = 0.0
+    found = np.zeros(())
     for i in range(4):
         weight = np.ones(len(times))
         for j in range(4):
@@ -92,7 +103,7 @@ def gaps(name: str, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.where(same, 0.0, np.where(np.isnan(gap), np.inf, gap))
 
 
-def cost(name: str, grid, values, siblings=None) -> float:
+def cost(name: str, grid: np.ndarray, values: ArrayLike, siblings: Mapping[str, np.ndarray] | None = None) -> float:
     """About the largest error that `at` makes on this grid: two of three rows are left out, interpolated, and the miss
     divided by what a third of the spacing gains. 0 for columns that are held, NaN with fewer than ten rows.
     """

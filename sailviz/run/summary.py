@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterable, Sequence
 from html import escape
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sailviz.words import acceleration, angle, duration, length
+
+if TYPE_CHECKING:
+    from sailviz.run.arrays import Run
 
 MOST_EVENTS = 12
 BEYOND = 1e9  # times the distance: a semi-major axis beyond it is that of a parabola
@@ -15,7 +20,7 @@ LINE = "border-bottom: 1px solid rgba(128, 128, 128, 0.35)"  # seen on white and
 CELL = "text-align: left; padding: 2px 14px 2px 0; border: none"
 
 
-def html(run) -> str:
+def html(run: Run) -> str:
     """The summary of a run or of a block of one."""
     setting = run.setting
     parts = [f"<b>{escape(setting.title)}</b>"]
@@ -34,7 +39,7 @@ def html(run) -> str:
     return f'<div style="color: inherit; background: none; max-width: 60em">{body}{"".join(tables)}</div>'
 
 
-def span(run) -> str:
+def span(run: Run) -> str:
     """How many rows over what time, and why it ended."""
     if not len(run):
         return "no rows"
@@ -44,7 +49,7 @@ def span(run) -> str:
     return f"{rows} over {duration(run.time[-1] - run.time[0])}{begin}{end}{since(run.setting.epoch)}"
 
 
-def since(epoch) -> str:
+def since(epoch: np.datetime64 | None) -> str:
     """What t = 0 is on the calendar."""
     if epoch is None:
         return ""
@@ -52,12 +57,12 @@ def since(epoch) -> str:
     return f", t = 0 at {date}{'' if clock == '00:00:00' else ' ' + clock} UTC"
 
 
-def ends(run) -> list[tuple[str, str, str]]:
+def ends(run: Run) -> list[tuple[str, str, str]]:
     """(quantity, at the first row, at the last row)."""
     e = run.elements
     distance, speed = (np.linalg.norm(vector[[0, -1]], axis=1) for vector in (run.position, run.velocity))
     farthest = distance.max()
-    rows = [
+    rows: list[tuple[str, np.ndarray, Callable[[float], str]]] = [
         ("time", run.time, duration),
         (f"distance from the {run.setting.body.name}", distance, length),
         ("speed", speed, lambda value: f"{value / 1e3:.6g} km/s"),
@@ -72,7 +77,7 @@ def ends(run) -> list[tuple[str, str, str]]:
     return [(name, say(values[0]), say(values[-1])) for name, values, say in rows]
 
 
-def table(head, rows) -> str:
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     """Escaped cells under a head."""
     top = "".join(f'<th style="{CELL}; {LINE}; font-weight: normal; opacity: 0.7">{escape(word)}</th>' for word in head)
     lines = ("".join(f'<td style="{CELL}">{escape(str(word))}</td>' for word in row) for row in rows)

@@ -1,0 +1,206 @@
+"""Whether arrays from elsewhere make a trajectory: everything that is wrong with them, said at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sailviz.constants import MU_EARTH, MU_SUN, RADIUS_EARTH, RADIUS_SUN
+from sailviz.errors import RecordingError
+from sailviz.run import resample
+from sailviz.run.arrays import Body, Event, Reference
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    Epoch = np.datetime64 | datetime | str  # UTC
+    Curves = Mapping[str, ArrayLike] | Iterable[Reference | tuple[str, ArrayLike]]
+    Events = Iterable[Event | tuple[str, float]]
+
+LABELS = {
+    "solar-sail": "Solar sail",
+    "electric-sail": "E-sail",
+    "plasma-brake": "Plasma brake",
+    "thruster": "Thruster",
+    "none": "Spacecraft",
+}
+NOTHING = np.zeros(0)
+BODIES = {"Sun": Body("Sun", MU_SUN, RADIUS_SUN), "Earth": Body("Earth", MU_EARTH, RADIUS_EARTH)}
+INSIDE = 0.9  # of the body's radius: what lies deeper is rather in the wrong unit than in the ground
+TOO_FAST = 30.0  # how many times farther than its velocity says a craft may move between two rows
+
+
+class TrajectoryError(RecordingError, ValueError):
+    """Arrays that make no trajectory. `faults` lists everything that is wrong with them."""
+
+    def __init__(self, faults: list[str]) -> None:
+        self.faults = tuple(faults)
+        count = "1 fault" if len(faults) == 1 else f"{len(faults)} faults"
+        super().__init__("\n".join([f"trajectory: {count}", *(f"  {fault}" for fault in faults)]))
+
+
+class ArrayChecks:
+    """Gathers everything that is wrong with the arguments. What comes back beside a fault is not for use."""
+
+    def __init__(self) -> None:
+        self._faults: list[str] = []
+
+    @property
+    def good(self) -> bool:
+        return not self._faults
+
+    def say(self, fault: str) -> None:
+        self._faults.append(fault)
+
+    def refuse(self, fault: str) -> np.ndarray:
+        """Nothing, for the argument at fault."""
+        self.say(fault)
+        return NOTHING
+
+    def finish(self) -> None:
+        if self._faults:
+            raise TrajectoryError(self._faults)
+
+    def array(self, name: str, values: ArrayLike, wanted: str) -> np.ndarray:
+        """float64 and finite, a copy of its own."""
+        try:
+            found = np.array(values, dtype=float)
+        except (TypeError, ValueError):
+            return self.refuse(f"{name}: not an array of numbers, wanted {wanted}")
+        if found.size == 0:
+            return self.refuse(f"{name}: has no values, wanted {wanted}")
+        if name == "time" and found.ndim != 1:
+            return self.refuse(f"{name}: shape {found.shape}, wanted {wanted}")
+        if not np.isfinite(found).all():
+            index = np.argwhere(~np.isfinite(found))[0]
+            self.say(f"{name}: row {index[0]} is not a number ({found[tuple(index)]})")
+        return found
+
+    def increasing(self, name: str, values: np.ndarray) -> None:
+        down = np.flatnonzero(~(np.diff(values) > 0) & np.isfinite(np.diff(values)))
+        if len(down):
+            i = int(down[0])
+            self.say(f"{name}: does not increase from row {i} ({values[i]:.10g}) to row {i + 1} ({values[i + 1]:.10g})")
+
+    def vectors(self, name: str, values: ArrayLike, rows: int | None) -> np.ndarray:
+        """(n, 3) for n rows, or for any number."""
+        wanted = f"({rows if rows is not None else 'n'}, 3)"
+        found = self.array(name, values, wanted)
+        if found is NOTHING:
+            return NOTHING
+        if found.ndim != 2 or found.shape[1] != 3 or (rows is not None and len(found) != rows):
+            turned = ": transpose it" if found.ndim == 2 and found.T.shape == (rows, 3) else ""
+            return self.refuse(f"{name}: shape {found.shape}, wanted {wanted}{turned}")
+        return found
+
+    def mass(self, values: ArrayLike, rows: int | None) -> np.ndarray:
+        """(n,) kg from a number or a column."""
+        found = self.array("mass", values, "a number or (n,)")
+        if found is NOTHING:
+            return NOTHING
+        if found.ndim > 1 or (found.ndim == 1 and len(found) != rows):
+            return self.refuse(f"mass: shape {found.shape}, wanted a number or ({rows},)")
+        if not (found > 0).all():
+            return self.refuse("mass: must be positive")
+        return np.broadcast_to(found, rows or 1).copy()
+
+    def body(self, name: str | None, mu: float, radius: float | None) -> Body:
+        """The central body, by its name or by its mu."""
+        if not isinstance(mu, int | float) or not (0 < mu < np.inf):
+            self.say(f"mu: must be a positive number in m3/s2, not {mu!r}")
+            return BODIES["Sun"]
+        near = next((known for known in BODIES.values() if abs(mu / known.mu - 1) < 1e-3), None)
+        if name in BODIES and near is not BODIES[name]:
+            self.say(f"body: {name} does not go with mu = {mu:.6g} m3/s2; its own is {BODIES[name].mu:.9g}")
+        if radius is not None and (not isinstance(radius, int | float) or not 0 <= radius < np.inf):
+            self.say(f"radius: must be a number of metres, not {radius!r}")
+            return BODIES["Sun"]
+        known = near if name is None else BODIES.get(name)
+        default = known.radius if known else 0.0
+        name = name or (known.name if known else "body")
+        return Body(str(name), float(mu), float(default if radius is None else radius))
+
+    def epoch(self, value: Epoch | None) -> np.datetime64 | None:
+        """UTC to the nanosecond."""
+        if value is None:
+            return None
+        try:
+            if isinstance(value, datetime) and value.tzinfo:
+                value = value.astimezone(UTC).replace(tzinfo=None)
+            found = np.array([value.removesuffix("Z") if isinstance(value, str) else value], "datetime64[ns]")
+        except (TypeError, ValueError):
+            self.say(f"epoch: {value!r} is no date; wanted a datetime64, datetime or text like 2031-04-01T12:00")
+            return None
+        if np.isnat(found[0]):
+            self.say("epoch: is not a time")
+        moment: np.datetime64 | None = found[0]
+        return moment
+
+    def environment(self, columns: Mapping[str, ArrayLike], rows: int | None) -> dict[str, np.ndarray]:
+        """(n,) or (n, 3) columns by their names; truth values stay such."""
+        found = {}
+        for name, values in columns.items():
+            wanted = f"({rows},) or ({rows}, 3)"
+            column = self.array(f"environment[{name!r}]", values, wanted)
+            if column is not NOTHING and column.shape not in ((rows,), (rows, 3)):
+                self.say(f"environment[{name!r}]: shape {column.shape}, wanted {wanted}")
+            yes_or_no = column is not NOTHING and np.asarray(values).dtype == bool
+            found[str(name)] = column.astype(bool) if yes_or_no else column
+        return found
+
+    def references(self, curves: Curves) -> tuple[Reference, ...]:
+        """Curves (k, 3) m with their names."""
+        found = []
+        for item in curves.items() if isinstance(curves, Mapping) else curves:
+            if isinstance(item, Reference):
+                found.append(item)
+                continue
+            name, given = item
+            points = self.array(f"references[{name!r}]", given, "(k, 3)")
+            if points is not NOTHING and (points.ndim != 2 or points.shape[1] != 3):
+                self.say(f"references[{name!r}]: shape {points.shape}, wanted (k, 3)")
+            found.append(Reference(str(name), "target", points))
+        return tuple(found)
+
+    def events(self, events: Events, time: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> tuple[Event, ...]:
+        """Events with states, those between the rows read off a cubic."""
+        found = []
+        for item in events:
+            if isinstance(item, Event):
+                found.append(item)
+                continue
+            name, when = item
+            if not isinstance(when, int | float | np.number) or not time[0] <= when <= time[-1]:
+                self.say(f"events: {name!r} at {when!r} s is outside the run, {time[0]:.6g} to {time[-1]:.6g} s")
+                continue
+            state = {"position_m": position, "velocity_m_s": velocity}
+            at = np.array([float(when)])
+            now = [resample.at(at, column, time, values, state)[0] for column, values in state.items()]
+            found.append(Event(str(name), float(when), np.concatenate([*now, [1.0]])))
+        return tuple(sorted(found, key=lambda event: event.time))
+
+    def no_zeros(self, name: str, vectors: np.ndarray) -> None:
+        zero = np.flatnonzero(np.linalg.norm(vectors, axis=1) == 0)
+        if len(zero):
+            self.say(f"{name}: row {zero[0]} is the zero vector")
+
+    def units(self, time: np.ndarray, position: np.ndarray, velocity: np.ndarray, body: Body) -> None:
+        """What is plainly in kilometres."""
+        distance = np.linalg.norm(position, axis=1)
+        row = int(np.argmin(distance))
+        if distance[row] == 0:
+            self.say(f"position: row {row} is the centre of the {body.name}")
+        elif distance[row] < INSIDE * body.radius:
+            self.say(
+                f"position: row {row} lies {distance[row]:.4g} m from the centre of the {body.name}, whose radius is "
+                f"{body.radius:.4g} m; are these kilometres?"
+            )
+        elif len(time) > 1:
+            moved = np.linalg.norm(np.diff(position, axis=0), axis=1) / np.diff(time)
+            speed = np.linalg.norm(velocity, axis=1)
+            ratio = float(np.median(moved / np.maximum(speed[1:], 1e-300)))
+            if ratio > TOO_FAST:
+                self.say(f"velocity: the craft moves {ratio:.3g} times as fast; are these kilometres a second?")

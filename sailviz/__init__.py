@@ -29,8 +29,8 @@ if TYPE_CHECKING:
     from sailviz.scene.loading import load_scene as load_scene
     from sailviz.simulation.loop import simulate as simulate
     from sailviz.simulation.loop import simulate_blocks as simulate_blocks
-    from sailviz.sweeps.loop import Sweep as Sweep
     from sailviz.sweeps.loop import sweep as sweep
+    from sailviz.sweeps.result import Sweep as Sweep
     from sailviz.sweeps.store import SweepError as SweepError
 
     __version__: str
@@ -48,7 +48,7 @@ _HOMES = {
     "compare": "recording.comparison.comparer",
     "Comparison": "recording.comparison.result",
     "sweep": "sweeps.loop",
-    "Sweep": "sweeps.loop",
+    "Sweep": "sweeps.result",
     "export": "recording.exports",
     "show": "recording.views.notebook",
     "SweepError": "sweeps.store",

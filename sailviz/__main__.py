@@ -1,5 +1,6 @@
 """`python -m sailviz`."""
 
-from sailviz.cli.main import main
+from sailviz.cli import main
 
-main(prog_name="sailviz")
+if __name__ == "__main__":
+    main(prog_name="sailviz")

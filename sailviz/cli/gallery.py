@@ -1,128 +1,24 @@
-"""The pictures of the README: one of every shipped scene, where it shows best, small enough for a repository."""
+"""The command that takes the pictures of the README."""
 
 from __future__ import annotations
 
-import io
-import tempfile
-from dataclasses import dataclass
 from pathlib import Path
 
-from sailviz.errors import RecordingError
-from sailviz.recording.views.movie import palette_of, written_whole
-from sailviz.recording.views.screenshot import FRAME, Studio, check_vulkan
-from sailviz.shipped import shipped_scenes
+import click
 
-SIZE = (1280, 720)
-LARGEST = 300_000  # bytes
-COLUMNS = 3
+from sailviz.cli.shared import collecting_failures, make_folder, progress_bar, say_if_compiling
 
 
-@dataclass(frozen=True)
-class Pose:
-    """What a picture shows: the start of a view's name, "" for the whole window, and a fraction of the run."""
+@click.command(hidden=True)
+@click.argument("scenes", nargs=-1, metavar="[SCENE...]")
+@click.option("-o", "--output", default="assets/readme", show_default=True, metavar="DIR")
+@click.option("-q", "--quiet", is_flag=True, help="No progress bar.")
+def gallery(scenes: tuple[str, ...], output: str, quiet: bool) -> None:
+    """Take the pictures of the README, one of every shipped scene, and print the table that shows them."""
+    from sailviz.cli import readme_pictures
 
-    view: str = "System"
-    at: float = 0.7
-
-
-POSES = {  # chosen by eye; a scene that is not here is shown as `Pose()` says, one round a planet with "Follow"
-    "deorbit/cubesat": Pose("Follow", 0.35),
-    "deorbit/debris-260kg": Pose("Earth", 0.5),
-    "deorbit/gravity-gradient": Pose("Tether close-up", 0.4),
-    "deorbit/satellite-100kg": Pose("", 0.5),
-    "displaced/circular": Pose("", 0.7),
-    "displaced/earth-type-ii-elliptic": Pose("System", 0.35),
-    "displaced/ecliptic": Pose("System", 0.2),
-    "displaced/heliostationary": Pose("Follow", 0.35),
-    "displaced/mars-following": Pose("Follow", 0.35),
-    "displaced/polar-observer": Pose("Follow", 0.35),
-    "displaced/stable": Pose("E-sail close-up", 0.35),
-    "displaced/storm-warning": Pose("Follow", 0.7),
-    "displaced/type-ii": Pose("Follow", 0.35),
-    "displaced/unstable": Pose("System", 1.0),
-    "spirals/circumferential": Pose("Follow", 0.35),
-    "spirals/first-order": Pose("System", 0.35),
-    "spirals/first-order-ellipse": Pose("E-sail close-up", 0.35),
-    "spirals/logarithmic": Pose("System", 0.35),
-    "spirals/optical-sail": Pose("Follow", 0.35),
-    "spirals/radial-escape": Pose("Follow", 0.7),
-    "spirals/tangential-escape": Pose("Follow", 0.7),
-    "transfers/earth-mars-jpl-2015": Pose("", 0.6),
-    "transfers/solar-polar": Pose("System", 0.95),
-    "wind/mars": Pose("", 0.9),
-    "wind/transfer-arc": Pose("Follow", 0.35),
-}
-
-
-def gallery(folder, names=(), *, size=SIZE, progress=None) -> dict[str, Path]:
-    """Fly and photograph shipped scenes, all of them unless named -> name: picture. Raises RecordingError where a view
-    complains, and as `picture` does.
-    """
-    from sailviz.recording.writer import record
-    from sailviz.scene.loading import load_scene
-    from sailviz.simulation.loop import simulate_blocks
-
-    check_vulkan()
-    scenes = shipped_scenes()
-    unknown = [name for name in names if name not in scenes]
-    if unknown:
-        raise RecordingError(f"there is no shipped scene {unknown[0]}; `sailviz list` names them")
-    files = file_names(names or scenes)
-    for number, (name, file) in enumerate(files.items()):
-        with tempfile.TemporaryDirectory(prefix="sailviz-") as scratch:
-            path = Path(scratch) / "scene.rrd"
-            record(simulate_blocks(load_scene(name)), path)
-            photograph(path, Path(folder) / file, pose_of(name), size)
-        if progress:
-            progress((number + 1) / len(files))
-    return {name: Path(folder) / file for name, file in files.items()}
-
-
-def pose_of(name: str) -> Pose:
-    return POSES.get(name, Pose("Follow") if name.startswith("deorbit/") else Pose())
-
-
-def file_names(names) -> dict[str, str]:
-    """Scene -> file: the last part of its name, or all of it where two scenes share that."""
-    last = [name.rsplit("/", 1)[-1] for name in shipped_scenes()]
-    short = {name: name.rsplit("/", 1)[-1] for name in names}
-    return {name: f"{end if last.count(end) == 1 else name.replace('/', '-')}.png" for name, end in short.items()}
-
-
-def photograph(recording: Path, out: Path, pose: Pose, size) -> None:
-    """One picture of a recording, squeezed."""
-    framed = (size[0] + FRAME[0], size[1] + FRAME[1]) if pose.view else size
-    shot = recording.with_suffix(".png")
-    with Studio(recording, size=framed, panels=False) as studio:
-        report = studio.shoot(shot, view=pose.view or None, at=pose.at)
-    if report.errors:
-        raise RecordingError(f"a view complains while {out} is taken: {report.errors[0]}")
-    with written_whole(out) as part:
-        part.write_bytes(squeezed(shot.read_bytes()))
-
-
-def squeezed(png: bytes, largest: int = LARGEST) -> bytes:
-    """A PNG with a palette, of as many colours as its size allows; dithered, or the Sun's glow would show rings."""
-    from PIL import Image
-
-    image = Image.open(io.BytesIO(png)).convert("RGB")
-    for colours in (256, 128, 64, 32):
-        out = io.BytesIO()
-        few = image.quantize(palette=palette_of(image, colours), dither=Image.Dither.FLOYDSTEINBERG)
-        few.save(out, "PNG", optimize=True)
-        if out.tell() <= largest:
-            break
-    return out.getvalue()
-
-
-def markdown(pictures: dict[str, Path]) -> str:
-    """A table of the pictures, each with the title of its scene and linked to its file."""
-    from sailviz.scene.loading import load_scene
-
-    cells = [
-        f"[![{load_scene(name).title}]({path.as_posix()})](scenes/{name}.toml)<br>{load_scene(name).title}"
-        for name, path in pictures.items()
-    ]
-    cells += [""] * (-len(cells) % COLUMNS)
-    rows = ["| " + " | ".join(cells[start : start + COLUMNS]) + " |" for start in range(0, len(cells), COLUMNS)]
-    return "\n".join(["|" + "  |" * COLUMNS, "|" + "---|" * COLUMNS, *rows])
+    say_if_compiling(quiet)
+    with collecting_failures() as failures, failures.next(), progress_bar("Gallery", quiet) as progress:
+        folder = Path(output)
+        make_folder(folder)
+        click.echo(readme_pictures.markdown(readme_pictures.take(folder, scenes, progress=progress)))

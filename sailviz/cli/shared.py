@@ -1,4 +1,4 @@
-"""What commands share: settings as KEY=VALUE, a progress bar, and exit codes.
+"""What commands share: arguments, settings as KEY=VALUE, a progress bar, and exit codes.
 
 0 all went well, 1 an expectation or a picture failed, 2 bad input, 3 the propagation failed, 130 interrupted.
 """
@@ -8,7 +8,10 @@ from __future__ import annotations
 import json
 import sys
 import tomllib
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
 
 import click
 
@@ -16,8 +19,18 @@ from sailviz.errors import PropagationError, RecordingError, SceneError
 
 EXPECTATION_FAILED, BAD_INPUT, RUN_FAILED, INTERRUPTED = 1, 2, 3, 130
 
+scenes_argument = click.argument("scenes", nargs=-1, required=True, metavar="SCENE...")
+files_argument = click.argument("files", nargs=-1, required=True, metavar="FILE...")
+set_option = click.option(
+    "--set",
+    "settings",
+    multiple=True,
+    metavar="KEY=VALUE",
+    help="Put a value over the scene's, e.g. propagation.duration_yr=1.",
+)
 
-def values_of(settings) -> dict:
+
+def values_of(settings: Iterable[str]) -> dict[str, Any]:
     """KEY=VALUE pairs; the value is read as TOML, or taken as text where it is not."""
     values = {}
     for setting in settings:
@@ -31,15 +44,6 @@ def values_of(settings) -> dict:
     return values
 
 
-set_option = click.option(
-    "--set",
-    "settings",
-    multiple=True,
-    metavar="KEY=VALUE",
-    help="Put a value over the scene's, e.g. propagation.duration_yr=1.",
-)
-
-
 def say_if_compiling(quiet: bool) -> None:
     """Tell a person why the first run takes so long."""
     from sailviz.compiled import is_compiled
@@ -50,7 +54,7 @@ def say_if_compiling(quiet: bool) -> None:
 
 
 @contextmanager
-def progress_bar(title, quiet):
+def progress_bar(title: str, quiet: bool) -> Iterator[Callable[[float], None] | None]:
     """A bar for work longer than a second, silent when not on a terminal."""
     if quiet or not sys.stderr.isatty():
         yield None
@@ -63,22 +67,33 @@ def progress_bar(title, quiet):
         yield lambda fraction: bar.update(fraction - bar.n)
 
 
+def make_folder(folder: Path) -> None:
+    """Make a folder where there is none. RecordingError where that cannot be."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise RecordingError(f"cannot make the folder {folder}: {(error.strerror or str(error)).lower()}") from None
+
+
 class Failures:
     """Collects what went wrong over several scenes, so that one bad scene does not hide the others."""
 
-    def __init__(self, as_json):
+    def __init__(self, as_json: bool):
         self.code = 0
         self.as_json = as_json
-        self.summaries = []
+        self.summaries: list[dict[str, Any]] = []
 
-    def worst(self, code):
+    def worst(self, code: int) -> None:
+        """Exit with this code, unless with a higher one."""
         self.code = max(self.code, code)
 
-    def summary(self, values):
+    def summary(self, values: dict[str, Any]) -> None:
+        """What --json prints of one scene."""
         self.summaries.append(values)
 
     @contextmanager
-    def next(self, name=""):
+    def next(self, name: str = "") -> Iterator[None]:
+        """Go on with the next scene whatever becomes of this one."""
         try:
             yield
         except SceneError as error:
@@ -86,7 +101,7 @@ class Failures:
         except (PropagationError, RecordingError) as error:
             self._tell(name, error, RUN_FAILED if isinstance(error, PropagationError) else BAD_INPUT)
 
-    def _tell(self, name, error, code):
+    def _tell(self, name: str, error: Exception, code: int) -> None:
         self.worst(code)
         if self.as_json:
             self.summaries.append({"scene": name, "error": str(error)})
@@ -94,7 +109,8 @@ class Failures:
 
 
 @contextmanager
-def collecting_failures(as_json=False):
+def collecting_failures(as_json: bool = False) -> Iterator[Failures]:
+    """What goes wrong within is told when it happens; the worst of it is the exit code."""
     failures = Failures(as_json)
     try:
         yield failures
@@ -105,3 +121,16 @@ def collecting_failures(as_json=False):
         click.echo(json.dumps(failures.summaries, indent=2))
     if failures.code:
         sys.exit(failures.code)
+
+
+@contextmanager
+def in_one_sentence() -> Iterator[None]:
+    """A recording that cannot be read or written ends the command in one sentence and exit code 2."""
+    try:
+        yield
+    except RecordingError as error:
+        click.echo(str(error), err=True)
+        sys.exit(BAD_INPUT)
+    except KeyboardInterrupt:
+        click.echo("Interrupted.", err=True)
+        sys.exit(INTERRUPTED)

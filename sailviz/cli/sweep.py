@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import json
+import re
 import sys
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -19,6 +23,10 @@ from sailviz.cli.shared import (
     values_of,
 )
 from sailviz.errors import RecordingError, SailvizError, SceneError
+
+if TYPE_CHECKING:
+    from sailviz.sweeps import Sweep
+    from sailviz.sweeps.definition import Definition
 
 
 @click.command()
@@ -52,7 +60,21 @@ from sailviz.errors import RecordingError, SailvizError, SceneError
 @click.option("--workers", type=click.IntRange(1), metavar="N", help="As many as there are cores by default.")
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
 @click.option("--json", "as_json", is_flag=True, help="Print a summary that a script can read.")
-def sweep(scene, vary, together, draws, seed, report, record, settings, output, engine, workers, quiet, as_json):
+def sweep(
+    scene: str,
+    vary: tuple[str, ...],
+    together: bool | None,
+    draws: int | None,
+    seed: int | None,
+    report: tuple[str, ...],
+    record: tuple[str, ...],
+    settings: tuple[str, ...],
+    output: str | None,
+    engine: str,
+    workers: int | None,
+    quiet: bool,
+    as_json: bool,
+) -> None:
     """Fly a scene over a grid or over distributions of its keys, and write a table with a row per flight.
 
     SCENE is a scene or a sweep file, or the name of a shipped one. A sweep that was interrupted or killed goes on where
@@ -90,7 +112,7 @@ def sweep(scene, vary, together, draws, seed, report, record, settings, output, 
         sys.exit(EXPECTATION_FAILED)
 
 
-def _varied(items) -> dict[str, str]:
+def _varied(items: Iterable[str]) -> dict[str, str]:
     found = {}
     for item in items:
         key, equals, text = item.partition("=")
@@ -102,12 +124,12 @@ def _varied(items) -> dict[str, str]:
     return found
 
 
-def _listed(items) -> list[str]:
+def _listed(items: Iterable[str]) -> list[str]:
     return [word.strip() for item in items for word in item.split(",") if word.strip()]
 
 
 @contextmanager
-def _progress(title, flights, quiet):
+def _progress(title: str, flights: int, quiet: bool) -> Iterator[Callable[[int, int], None] | None]:
     """A bar with flights, their rate and the time left, silent when not on a terminal."""
     if quiet or not sys.stderr.isatty():
         yield None
@@ -115,9 +137,9 @@ def _progress(title, flights, quiet):
     from tqdm import tqdm
 
     with tqdm(total=flights, desc=title[:40], unit=" flights", delay=1, leave=False, smoothing=0.1) as bar:
-        begun = []
+        begun: list[int] = []
 
-        def progress(done, _):
+        def progress(done: int, _: int) -> None:
             if not begun:  # flights done before say nothing of the rate
                 begun.append(done)
                 bar.initial = bar.n = done
@@ -136,11 +158,11 @@ def _say_interrupted(path: Path) -> None:
     click.echo(f"Interrupted: {where}. The same command goes on from there.", err=True)
 
 
-def _statistics(found, names) -> dict[str, dict[str, float]]:
+def _statistics(found: Sweep, names: Sequence[str]) -> dict[str, dict[str, float]]:
     """Of every measured column: how many flights have it, mean, standard deviation, least, median, largest."""
     import numpy as np
 
-    table = found.to_arrow(names)
+    table = found.to_arrow(list(names))
     statistics = {}
     for name in names:
         values = table[name].to_numpy()
@@ -157,11 +179,11 @@ def _statistics(found, names) -> dict[str, dict[str, float]]:
     return statistics
 
 
-def _measured(definition) -> list[str]:
+def _measured(definition: Definition) -> list[str]:
     return list(dict.fromkeys([*definition.expected, *definition.report]))
 
 
-def _facts(found, definition) -> dict:
+def _facts(found: Sweep, definition: Definition) -> dict[str, Any]:
     return {
         "table": str(found.path),
         "flights": found.flights,
@@ -173,12 +195,13 @@ def _facts(found, definition) -> dict:
     }
 
 
-def _tell(found, definition) -> None:
+def _tell(found: Sweep, definition: Definition) -> None:
     before = f", {found.resumed:,} of them done before" if found.resumed else ""
     click.echo(f"{definition.scene().title}: {found.flights:,} flights{before}")
-    rows = [("quantity", "flights", "mean", "deviation", "min", "median", "max")]
+    shown = ("mean", "deviation", "min", "median", "max")
+    rows: list[tuple[str, ...]] = [("quantity", "flights", *shown)]
     for name, numbers in _statistics(found, _measured(definition)).items():
-        rows.append((name, f"{numbers['flights']:,}", *(f"{numbers[word]:.7g}" for word in rows[0][2:])))
+        rows.append((name, f"{numbers['flights']:,}", *(f"{numbers[word]:.7g}" for word in shown)))
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows if len(rows) > 1 else ():
         cells = [
@@ -197,17 +220,11 @@ def _tell(found, definition) -> None:
         click.echo(f"Recorded flight {number}: {path}")
 
 
-def _reasons(found, most=5) -> list[tuple[str, int]]:
+def _reasons(found: Sweep, most: int = 5) -> list[tuple[str, int]]:
     """The commonest reasons of failure, shortened, numbers left out so that equal ones count together."""
-    import re
-    from collections import Counter
-
     words = Counter(
         re.sub(r"[-+]?\d[\d.]*(e[-+]?\d+)?", "#", reason)[:160]
         for reason in found.to_arrow(["reason"])["reason"].to_pylist()
         if reason
     )
     return words.most_common(most)
-
-
-COMMANDS = (sweep,)

@@ -5,13 +5,21 @@ from __future__ import annotations
 import json
 import math
 import sys
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from sailviz.cli.shared import BAD_INPUT, EXPECTATION_FAILED, progress_bar
+from sailviz.cli.transfer_in_words import summary, words
 from sailviz.constants import AU, DAY
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from sailviz.transfers import Place
 
 TABLE_MM_S2 = (2.0, 1.5, 1.0, 0.75, 0.5, 0.35, 0.25)
 
@@ -49,9 +57,23 @@ TABLE_MM_S2 = (2.0, 1.5, 1.0, 0.75, 0.5, 0.35, 0.25)
 @click.option("--json", "as_json", is_flag=True, help="Print what was found for a script to read.")
 @click.option("-q", "--quiet", is_flag=True, help="Print the flight time in days only.")
 def transfer(
-    origin, target, sails, acceleration, orbits, date, window, dates, radius_au, inclination_deg, starts, as_table,
-    output, form, as_json, quiet,
-):  # fmt: skip
+    origin: str,
+    target: str | None,
+    sails: tuple[str, ...],
+    acceleration: float,
+    orbits: bool,
+    date: str | None,
+    window: float | None,
+    dates: int,
+    radius_au: float | None,
+    inclination_deg: float | None,
+    starts: int | None,
+    as_table: bool,
+    output: str | None,
+    form: str,
+    as_json: bool,
+    quiet: bool,
+) -> None:
     """Find the fastest flight of a sail from one orbit to another, and how it must be steered.
 
     FROM and TO are planets, mercury to saturn, or ceres; by default their orbits are circles in one plane. Exit code 1
@@ -60,36 +82,49 @@ def transfer(
     sails = sails or ("ideal",)
     try:
         _agree(target, radius_au, inclination_deg, orbits, date, window, sails, as_table, output, acceleration)
-        from sailviz import transfers
         from sailviz.design.minimum_time import costates
+        from sailviz.transfers import find, place, scene_of
 
         _say_if_compiling(costates.propagate_batch, quiet or as_json)
-        start = transfers.place(origin)
-        end = _aim(transfers, target, radius_au, inclination_deg)
+        start = place(origin)
+        end = _aim(target, radius_au, inclination_deg)
         if as_table:
-            _table(transfers, start, end, sails, quiet, as_json)
+            _table(start, end, sails, quiet, as_json)
             return
         departure = None if date is None else date if window is None else _window(date, window)
         with _progress(f"{start.name} to {end.name}", quiet or as_json) as progress:
-            options = {"orbits": orbits, "departure": departure, "starts": starts, "dates": dates}
-            found = transfers.find(start, end, sails[0], acceleration * 1e-3, progress=progress, **options)
-        text = transfers.scene_of(found, form) if output and found.flight.feasible else None
+            found = find(
+                start, end, sails[0], acceleration * 1e-3,
+                orbits=orbits, departure=departure, starts=starts, dates=dates, progress=progress,
+            )  # fmt: skip
+        text = scene_of(found, form) if output and found.flight.feasible else None
     except ValueError as error:
         click.echo(str(error), err=True)
         raise click.exceptions.Exit(BAD_INPUT) from None
     if as_json:
-        click.echo(json.dumps(_summary(found), indent=2))
+        click.echo(json.dumps(summary(found), indent=2))
     elif quiet and found.flight.feasible:
         click.echo(f"{found.flight.time / DAY:.6f}")
     else:
-        click.echo("\n".join(_words(transfers, found)))
+        click.echo("\n".join(words(found)))
     if not found.flight.feasible:
         raise click.exceptions.Exit(EXPECTATION_FAILED)
-    if text is not None:
+    if output and text is not None:
         _write(output, text, quiet or as_json)
 
 
-def _agree(target, radius_au, inclination_deg, orbits, date, window, sails, as_table, output, acceleration):
+def _agree(
+    target: str | None,
+    radius_au: float | None,
+    inclination_deg: float | None,
+    orbits: bool,
+    date: str | None,
+    window: float | None,
+    sails: Sequence[str],
+    as_table: bool,
+    output: str | None,
+    acceleration: float,
+) -> None:
     """ValueError for what does not go together."""
     if (target is None) == (radius_au is None):
         raise ValueError("Say where to: a planet, or a circle by --radius-au.")
@@ -109,13 +144,16 @@ def _agree(target, radius_au, inclination_deg, orbits, date, window, sails, as_t
         raise ValueError(f"--acceleration must be above 0 mm/s², is {acceleration:g}.")
 
 
-def _aim(transfers, target, radius_au, inclination_deg):
-    if radius_au is None:
-        return transfers.place(target)
-    return transfers.circle(radius_au * AU, math.radians(inclination_deg or 0.0))
+def _aim(target: str | None, radius_au: float | None, inclination_deg: float | None) -> Place:
+    from sailviz.transfers import circle, place
+
+    if target is not None:
+        return place(target)
+    assert radius_au is not None, "_agree has seen that there is one of the two"
+    return circle(radius_au * AU, math.radians(inclination_deg or 0.0))
 
 
-def _window(date, days):
+def _window(date: str, days: float) -> tuple[np.datetime64, np.datetime64]:
     import numpy as np
 
     try:
@@ -125,7 +163,7 @@ def _window(date, days):
     return first, first + np.timedelta64(round(days * DAY), "s")
 
 
-def _say_if_compiling(compiled, quiet):
+def _say_if_compiling(compiled: Callable[..., Any], quiet: bool) -> None:
     from sailviz.compiled import is_compiled
 
     if not quiet and not is_compiled(compiled):
@@ -133,104 +171,22 @@ def _say_if_compiling(compiled, quiet):
 
 
 @contextmanager
-def _progress(title, quiet):
+def _progress(title: str, quiet: bool) -> Iterator[Callable[[float, str], None] | None]:
     with progress_bar(title, quiet) as bar:
         yield None if bar is None else lambda share, words: bar(min(max(share, 0.0), 1.0))
 
 
-def _words(transfers, found):
-    """What was found, line by line."""
-    import numpy as np
-
-    flight = found.flight
-    craft = transfers.device_words(flight.device)
-    ways = {
-        "circles": "between circles in one plane",
-        "orbits": "between orbits in space, both anomalies free",
-        "rendezvous": "to meet the planet where it is",
-    }
-    yield f"{found.origin.name} to {found.target.name}, {ways[found.kind]}"
-    yield f"{craft}, {flight.characteristic_acceleration * 1e3:g} mm/s² at 1 au"
-    if not flight.feasible:
-        yield f"  No flight found: {flight.reason.removeprefix('no flight found: ')}."
-        return
-    rows = [("flight time", f"{flight.time / DAY:.6f} d, {flight.revolutions:.4f} revolutions about the Sun")]
-    if found.kind == "rendezvous":
-        rows += [("departure", _day(flight.departure)), ("arrival", _day(flight.arrival))]
-    elif found.kind == "orbits":
-        anomalies = f"{np.degrees(flight.departure_anomaly):.4f}° and {np.degrees(flight.arrival_anomaly):.4f}°"
-        rows += [("true anomalies", f"{anomalies} at departure and arrival")]
-    rows += [("costates", " ".join(f"{x:.10g}" for x in flight.costates))]
-    of = "radius, radial and transverse speed; mu = r0 = 1" if found.kind == "circles" else "position, velocity; 1 au"
-    rows += [("", f"of {of}, H = +1: minus the days won per unit, in {_unit(found):.4f} d")]
-    position, _, switches = transfers.path_of(flight)
-    rows += [("closest to the Sun", f"{np.linalg.norm(position, axis=1).min() / AU:.4f} au")]
-    if len(switches):
-        rows += [("thrust switches at", ", ".join(f"{t / DAY:.3f}" for t in switches) + " d")]
-    rows += [("residual", f"{flight.residual:.1e}, Hamiltonian drift {flight.hamiltonian_drift:.1e}")]
-    rows += [("local solutions", f"{flight.solutions} found")]
-    for name, value in rows:
-        yield f"  {name:<19}{value}"
-    yield "  " + flight.claim[0].upper() + flight.claim[1:] + ("" if flight.claim.endswith(".") else ".")
-    if getattr(flight, "window", None) is not None:
-        yield "  Leaving on       takes, days"
-        for day, time in zip(flight.window.departures, flight.window.times, strict=True):
-            took = f"{time / DAY:9.3f}" if np.isfinite(time) else "none found"
-            yield f"  {np.datetime_as_string(day, 'D')}       {took}"
-
-
-def _unit(found):
-    """The canonical unit of time, d."""
-    from sailviz.design.minimum_time.state_costate import TIME_UNIT
-
-    radius = found.origin.orbit.semi_major_axis / AU if found.kind == "circles" else 1.0
-    return radius**1.5 * TIME_UNIT / DAY
-
-
-def _day(moment):
-    import numpy as np
-
-    return np.datetime_as_string(moment, "m").replace("T", " ") + " UTC"
-
-
-def _summary(found):
-    """What was found, for JSON."""
-    flight = found.flight
-    values = {
-        "kind": found.kind,
-        "from": found.origin.name,
-        "to": found.target.name,
-        "sail": flight.device,
-        "characteristic_acceleration_mm_s2": flight.characteristic_acceleration * 1e3,
-        "found": flight.feasible,
-        "claim": flight.claim,
-        "time_d": _known(flight.time / DAY),
-        "revolutions": _known(flight.revolutions),
-        "costates": [_known(x) for x in flight.costates],
-        "residual": _known(flight.residual),
-        "hamiltonian_drift": _known(flight.hamiltonian_drift),
-        "local_solutions": flight.solutions,
-    }
-    if found.kind == "rendezvous":
-        values |= {"departure": str(flight.departure), "arrival": str(flight.arrival)}
-    return values
-
-
-def _known(value):
-    """A number for JSON, which has no NaN."""
-    return float(value) if math.isfinite(value) else None
-
-
-def _table(transfers, start, end, sails, quiet, as_json):
+def _table(start: Place, end: Place, sails: Sequence[str], quiet: bool, as_json: bool) -> None:
     """Flight times over the acceleration, one column per sail."""
     import numpy as np
 
     from sailviz.design.minimum_time.state_costate import canonical_sail
+    from sailviz.transfers import flight_times
 
     for sail in sails:
         canonical_sail(sail, 1e-3)  # ValueError for what is no sail, before the work begins
     with _progress(f"{start.name} to {end.name}", quiet or as_json) as progress:
-        found = transfers.flight_times(start, end, sails, np.array(TABLE_MM_S2) * 1e-3, progress=progress)
+        found = flight_times(start, end, sails, np.array(TABLE_MM_S2) * 1e-3, progress=progress)
     if as_json:
         days = [[None if np.isnan(x) else x / DAY for x in row] for row in found.time]
         values = {"characteristic_acceleration_mm_s2": TABLE_MM_S2, "sails": sails, "time_d": days}
@@ -244,7 +200,7 @@ def _table(transfers, start, end, sails, quiet, as_json):
         click.echo(f"{a:7.2f}" + "".join(cell.rjust(width) for cell in cells))
 
 
-def _write(output, text, quiet):
+def _write(output: str, text: str, quiet: bool) -> None:
     if output == "-":
         sys.stdout.write(text)
         return
@@ -256,6 +212,3 @@ def _write(output, text, quiet):
         raise click.exceptions.Exit(BAD_INPUT) from None
     if not quiet:
         click.echo(f"Wrote {output}; fly it with: sailviz run {output}")
-
-
-COMMANDS = (transfer,)

@@ -73,6 +73,11 @@ class Scene(Section):
         """File or shipped name that the scene came from, for messages."""
         return self._source
 
+    @property
+    def raw(self) -> dict[str, Any]:
+        """The tables as tomllib would give them, with the values that were put over them."""
+        return self._raw
+
     def resolved(self) -> dict[str, Any]:
         """Every value, defaults included, SI, ready for JSON."""
         return self.model_dump(mode="json")
@@ -86,7 +91,7 @@ class Scene(Section):
         """A copy with other values. values : {"device.lightness_number": 0.1, "propagation.duration_yr": 2}, keys
         and units as in a scene file; a key in another unit replaces the one in the file. SceneError as for
         `load_scene`."""
-        return _built(self._raw, values, self._text, self._source)
+        return build_scene(self._raw, values, self._text, self._source)
 
     @property
     def epoch_utc(self) -> datetime | None:
@@ -111,7 +116,7 @@ def load_scene(source: SceneSource, set: Mapping[str, Any] | None = None) -> Sce
     if isinstance(source, Scene):
         return source.with_values(set) if set else source
     if isinstance(source, dict):
-        return _built(source, set or {}, "", "scene")
+        return build_scene(source, set or {}, "", "scene")
     path, name = find_scene(source)
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -125,7 +130,7 @@ def load_scene(source: SceneSource, set: Mapping[str, Any] | None = None) -> Sce
         raise SceneError([Fault("file", f"is not valid TOML: {error}")], name) from None
     except RecursionError:
         raise SceneError([_TOO_DEEP], name) from None
-    return _built(raw, set or {}, text, name)
+    return build_scene(raw, set or {}, text, name)
 
 
 def find_scene(source: str | os.PathLike[str]) -> tuple[Path, str]:
@@ -147,7 +152,9 @@ def find_scene(source: str | os.PathLike[str]) -> tuple[Path, str]:
 _TOO_DEEP = Fault("file", "is nested too deeply")
 
 
-def _built(raw: dict[str, Any], values: Mapping[str, Any], text: str, name: str) -> Scene:
+def build_scene(raw: dict[str, Any], values: Mapping[str, Any], text: str, name: str) -> Scene:
+    """A scene of tables as tomllib gives them, with values put over them. text : of the file they were read from, "" if
+    none; name : of the source, for messages. SceneError as for `load_scene`."""
     try:
         return _validated(overridden(raw, values), text, name)
     except RecursionError:

@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING
 from sailviz.lazy import lazily
 
 if TYPE_CHECKING:
-    from sailviz.sweeps.loop import Sweep as Sweep
     from sailviz.sweeps.loop import sweep as sweep
+    from sailviz.sweeps.result import Sweep as Sweep
     from sailviz.sweeps.store import SweepError as SweepError
 
 _HOMES = {
     "sweep": "loop",
-    "Sweep": "loop",
+    "Sweep": "result",
     "SweepError": "store",
 }
 __getattr__, __dir__, __all__ = lazily(__name__, _HOMES)

@@ -11,8 +11,9 @@ from __future__ import annotations
 import hashlib
 import re
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -26,41 +27,41 @@ class Axis:
     """Listed values of a key."""
 
     key: str
-    values: tuple
+    values: tuple[Any, ...]
 
-    def words(self):
+    def words(self) -> list[Any]:
         """What the definition of a sweep keeps of it."""
         return list(self.values)
 
 
 @dataclass(frozen=True)
-class _Law:
+class _Distribution:
     parameters: tuple[str, ...]
     fault: Callable[..., str]  # of the parameters, "" if they will do
-    draw: Callable
+    draw: Callable[..., float]
     centre: Callable[..., float]
 
 
-_LAWS = {
-    "normal": _Law(
+_DISTRIBUTIONS = {
+    "normal": _Distribution(
         ("mean", "deviation"),
         lambda mean, deviation: "" if deviation >= 0 else "its deviation must be at least 0",
         lambda rng, mean, deviation: rng.normal(mean, deviation),
         lambda mean, deviation: mean,
     ),
-    "uniform": _Law(
+    "uniform": _Distribution(
         ("low", "high"),
         lambda low, high: "" if low < high else "its low end must lie below its high end",
         lambda rng, low, high: rng.uniform(low, high),
         lambda low, high: (low + high) / 2,
     ),
-    "lognormal": _Law(
+    "lognormal": _Distribution(
         ("median", "sigma"),
         lambda median, sigma: "" if median > 0 and sigma >= 0 else "needs a median above 0 and a sigma of at least 0",
         lambda rng, median, sigma: median * np.exp(sigma * rng.standard_normal()),
         lambda median, sigma: median,
     ),
-    "gamma": _Law(
+    "gamma": _Distribution(
         ("shape", "scale"),
         lambda shape, scale: "" if shape > 0 and scale > 0 else "needs shape and scale above 0",
         lambda rng, shape, scale: rng.gamma(shape, scale),
@@ -71,27 +72,29 @@ _LAWS = {
 
 @dataclass(frozen=True)
 class Draw:
-    """A key that is drawn anew for every flight. law : name, or "seed" for the flight's own seed."""
+    """A key that is drawn anew for every flight. distribution : name, or "seed" for the flight's own seed."""
 
     key: str
-    law: str
+    distribution: str
     parameters: tuple[float, ...] = ()
 
-    def centre(self):
+    def centre(self) -> float:
         """A value in the middle of the distribution."""
-        return 0 if self.law == "seed" else float(_LAWS[self.law].centre(*self.parameters))
+        return 0 if self.distribution == "seed" else float(_DISTRIBUTIONS[self.distribution].centre(*self.parameters))
 
-    def value(self, seed: int, cell: int, draw: int):
+    def value(self, seed: int, cell: int, draw: int) -> float:
         """The value of one flight: known from the sweep's seed, the key, the place on the grid and the draw's number
         alone, so that neither workers nor order nor the other keys of the sweep change it."""
-        if self.law == "seed":
+        if self.distribution == "seed":
             return flight_seed(seed, cell, draw)
         own = int.from_bytes(hashlib.sha256(self.key.encode()).digest()[:8], "little")
-        return float(_LAWS[self.law].draw(np.random.default_rng([seed, own, cell, draw]), *self.parameters))
+        rng = np.random.default_rng([seed, own, cell, draw])
+        return float(_DISTRIBUTIONS[self.distribution].draw(rng, *self.parameters))
 
     def words(self) -> str:
         """What the definition of a sweep keeps of it."""
-        return self.law if self.law == "seed" else f"{self.law}({', '.join(f'{p:.17g}' for p in self.parameters)})"
+        numbers = ", ".join(f"{number:.17g}" for number in self.parameters)
+        return f"{self.distribution}({numbers})" if self.parameters else self.distribution
 
 
 def flight_seed(seed: int, cell: int, draw: int) -> int:
@@ -99,7 +102,7 @@ def flight_seed(seed: int, cell: int, draw: int) -> int:
     return int(np.random.SeedSequence([seed, cell, draw]).generate_state(1)[0])
 
 
-def axis(key: str, low: float, high: float, count, spacing: str = "linear") -> Axis:
+def axis(key: str, low: float, high: float, count: float, spacing: str = "linear") -> Axis:
     """Values from low to high, both included; whole numbers where all of them are. ValueError says what is wrong."""
     if isinstance(count, bool) or count != int(count) or not 1 <= count <= MOST_VALUES:
         raise ValueError(f"a range has a whole number of values, 1 or more, not {count:g}.")
@@ -121,22 +124,23 @@ def drawn(key: str, text: str) -> Draw:
     if text.strip() == "seed":
         return Draw(key, "seed")
     found = re.fullmatch(r"\s*(\w+)\s*\(([^()]*)\)\s*", text)
-    if not found or found[1] not in _LAWS:
-        raise ValueError(f'"{text}" is not a distribution. {nearest(found[1] if found else text, [*_LAWS, "seed"])}')
-    law = _LAWS[found[1]]
-    usage = f"{found[1]}({', '.join(law.parameters)})"
+    if not found or found[1] not in _DISTRIBUTIONS:
+        hint = nearest(found[1] if found else text, [*_DISTRIBUTIONS, "seed"])
+        raise ValueError(f'"{text}" is not a distribution. {hint}')
+    distribution = _DISTRIBUTIONS[found[1]]
+    usage = f"{found[1]}({', '.join(distribution.parameters)})"
     try:
         parameters = tuple(float(word) for word in found[2].split(","))
     except ValueError:
         raise ValueError(f'"{text.strip()}": write numbers, {usage}.') from None
-    if len(parameters) != len(law.parameters) or not np.isfinite(parameters).all():
-        raise ValueError(f'"{text.strip()}": needs {len(law.parameters)} finite numbers, {usage}.')
-    if fault := law.fault(*parameters):
+    if len(parameters) != len(distribution.parameters) or not np.isfinite(parameters).all():
+        raise ValueError(f'"{text.strip()}": needs {len(distribution.parameters)} finite numbers, {usage}.')
+    if fault := distribution.fault(*parameters):
         raise ValueError(f'"{text.strip()}": {fault}.')
     return Draw(key, found[1], parameters)
 
 
-def varied(key: str, wanted) -> Axis | Draw:
+def varied(key: str, wanted: Any) -> Axis | Draw:
     """What a key takes, from text as above or from values. ValueError says what is wrong."""
     if isinstance(wanted, str):
         return _from_text(key, wanted)
@@ -157,7 +161,8 @@ def _from_text(key: str, text: str) -> Axis | Draw:
         spacing = ends[3].strip() if len(ends) == 4 else "linear"
         if len(numbers) < 3 or len(ends) > 4 or spacing not in ("linear", "log"):
             raise ValueError(f'"{text}": a range is LOW:HIGH:COUNT or LOW:HIGH:COUNT:log.')
-        return axis(key, *numbers, spacing)
+        low, high, count = numbers
+        return axis(key, low, high, count, spacing)
     if not text.strip():
         raise ValueError("has no values.")
     try:
@@ -166,9 +171,9 @@ def _from_text(key: str, text: str) -> Axis | Draw:
         return varied(key, [_plain(word.strip()) for word in text.split(",")])
 
 
-def _numbers(words) -> list[int | float] | None:
+def _numbers(words: Iterable[str]) -> list[int | float] | None:
     """The numbers that words are, None if one is not (but a time of day, say)."""
-    found = []
+    found: list[int | float] = []
     for word in words:
         try:
             found.append(int(word) if word.strip().lstrip("+-").isdecimal() else float(word))
@@ -177,7 +182,7 @@ def _numbers(words) -> list[int | float] | None:
     return found
 
 
-def _plain(word: str):
+def _plain(word: str) -> Any:
     """A TOML value, or the word itself."""
     try:
         return tomllib.loads(f"value = {word}")["value"]

@@ -5,26 +5,31 @@ from __future__ import annotations
 
 import json
 import time
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
 
 import sailviz
 from sailviz.errors import PropagationError, SailvizError, SceneError
 from sailviz.scene.loading import Scene
 from sailviz.sweeps.definition import Definition
 
+if TYPE_CHECKING:
+    import pyarrow as pa
+
 OK, FAILED = "ok", "failed"
 DIED = "the worker process died, for lack of memory perhaps"
 _scenes: dict[str, Scene] = {}  # of the definition that this process flies
 
 
-def schema_of(definition: Definition):
-    """Columns of the table of a sweep, in order. pyarrow.Schema"""
+def schema_of(definition: Definition) -> pa.Schema:
+    """Columns of the table of a sweep, in order."""
     import pyarrow as pa
 
     columns = [("index", pa.int64())]
     for axis in definition.axes:
         columns.append((axis.key, _type_of(axis.values)))
     for draw in definition.drawn:
-        columns.append((draw.key, pa.int64() if draw.law == "seed" else pa.float64()))
+        columns.append((draw.key, pa.int64() if draw.distribution == "seed" else pa.float64()))
     columns += [("seed", pa.int64()), ("status", pa.string()), ("reason", pa.string()), ("ended", pa.string())]
     columns += [("duration_s", pa.float64())]
     for name in definition.expected:
@@ -33,7 +38,7 @@ def schema_of(definition: Definition):
     return pa.schema([*columns, ("wall_s", pa.float64())])
 
 
-def _type_of(values):
+def _type_of(values: Iterable[Any]) -> pa.DataType:
     import pyarrow as pa
 
     kinds = {type(value) for value in values}
@@ -44,14 +49,14 @@ def _type_of(values):
     return pa.float64() if kinds <= {int, float} else pa.string()
 
 
-def _cell(value, kind: str):
+def _cell(value: Any, kind: str) -> Any:
     """A varied value as its column takes it; in a column of words, lists and tables as JSON."""
     if kind != "string":
         return value
     return json.dumps(value, default=str) if isinstance(value, (list, dict)) else str(value)
 
 
-def fly(definition: Definition, first: int, stop: int) -> list[dict]:
+def fly(definition: Definition, first: int, stop: int) -> list[dict[str, Any]]:
     """Rows of the flights first ... stop - 1. Raises only if this process runs another sailviz."""
     if definition.version != sailviz.__version__:
         raise SailvizError(f"a worker runs sailviz {sailviz.__version__}, this is {definition.version}")
@@ -62,16 +67,17 @@ def fly(definition: Definition, first: int, stop: int) -> list[dict]:
     return [_row(definition, scene, flight) for flight in range(first, stop)]
 
 
-def blank(definition: Definition, flight: int) -> dict:
+def blank(definition: Definition, flight: int) -> dict[str, Any]:
     """What is known of a flight before it flies."""
     kinds = {axis.key: str(_type_of(axis.values)) for axis in definition.axes}
     values = {key: _cell(value, kinds.get(key, "")) for key, value in definition.values(flight).items()}
     return {"index": flight, **values, "seed": definition.seed_of(flight), "status": FAILED, "reason": "", "ended": ""}
 
 
-def _row(definition: Definition, scene: Scene, flight: int) -> dict:
+def _row(definition: Definition, scene: Scene, flight: int) -> dict[str, Any]:
     row = blank(definition, flight)
-    began, flown = time.perf_counter(), []
+    began = time.perf_counter()
+    flown: list[float] = []
     try:
         row |= _measured(definition, scene.with_values(definition.values(flight)), flown)
         row["status"] = OK
@@ -86,9 +92,9 @@ def _row(definition: Definition, scene: Scene, flight: int) -> dict:
     return row
 
 
-def _measured(definition: Definition, scene: Scene, flown: list) -> dict:
+def _measured(definition: Definition, scene: Scene, flown: list[float]) -> dict[str, Any]:
     from sailviz.checks.expectations import Judge
-    from sailviz.simulation.loop import simulate_blocks
+    from sailviz.simulation import simulate_blocks
 
     reported = definition.reported()
     judge = Judge(scene.model_copy(update={"expect": [*scene.expect, *reported]}))

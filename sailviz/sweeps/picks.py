@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,12 +13,20 @@ from sailviz.sweeps.definition import Definition
 from sailviz.sweeps.flight import FAILED, schema_of
 from sailviz.words import nearest
 
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+    from sailviz.sweeps.store import FileStore
+
+Pick = int | tuple[str, str]
+
 _RULES = ("min", "max", "median")
 
 
-def check_picks(definition: Definition, wanted) -> list[int | tuple[str, str]]:
+def check_picks(definition: Definition, wanted: Iterable[str | int]) -> list[Pick]:
     """Flights by number, or ("min" | "max" | "median", column), or ("failed", ""). SceneError names every wrong one."""
-    found, faults = [], []
+    found: list[Pick] = []
+    faults = []
     columns = [
         name
         for name, kind in zip(schema_of(definition).names, schema_of(definition).types, strict=True)
@@ -44,11 +54,11 @@ def check_picks(definition: Definition, wanted) -> list[int | tuple[str, str]]:
     return found
 
 
-def picked(picks, table) -> list[int]:
+def picked(picks: Iterable[Pick], table: pa.Table) -> list[int]:
     """Numbers of the flights, each once; a rule that no flight meets picks none."""
     index = table["index"].to_numpy()
     good = np.array([status != FAILED for status in table["status"].to_pylist()], dtype=bool)
-    found = []
+    found: list[int] = []
     for pick in picks:
         if isinstance(pick, int):
             found.append(pick)
@@ -64,14 +74,15 @@ def picked(picks, table) -> list[int]:
     return list(dict.fromkeys(found))
 
 
-def record_picked(definition: Definition, picks, store) -> dict[int, Path]:
+def record_picked(definition: Definition, picks: Sequence[Pick], store: FileStore) -> dict[int, Path]:
     """Fly the picked flights once more, in this process, and record each as NAME-NUMBER.rrd beside the table. A flight
     that broke down is recorded as far as it came, one that never began not at all."""
     from sailviz.recording import record
-    from sailviz.simulation.loop import simulate_blocks
+    from sailviz.simulation import simulate_blocks
 
     digits = len(str(definition.flights - 1))
-    scene, written = definition.scene(), {}
+    scene = definition.scene()
+    written: dict[int, Path] = {}
     columns = [name for _, name in (pick for pick in picks if isinstance(pick, tuple)) if name]
     for flight in picked(picks, store.columns(["index", "status", *dict.fromkeys(columns)])):
         path = store.path.with_name(f"{store.path.stem}-{flight:0{digits}d}.rrd")
@@ -89,5 +100,5 @@ def record_picked(definition: Definition, picks, store) -> dict[int, Path]:
     return written
 
 
-def _short(value) -> str:
+def _short(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)

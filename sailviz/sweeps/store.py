@@ -9,13 +9,18 @@ from __future__ import annotations
 import json
 import os
 import shutil
+from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sailviz.errors import SailvizError
 from sailviz.sweeps.definition import Definition
 from sailviz.sweeps.flight import FAILED, schema_of
+
+if TYPE_CHECKING:
+    import pyarrow as pa
 
 GROUP_ROWS = 65_536  # of the finished table, read at once
 _FACTS = b"sailviz.sweep"
@@ -28,21 +33,21 @@ class SweepError(SailvizError):
 class MemoryStore:
     """Rows that are kept as an arrow table and nowhere else."""
 
-    path = None
+    path: Path | None = None
 
     def __init__(self, definition: Definition):
         self.schema = schema_of(definition).with_metadata({_FACTS: json.dumps(definition.facts()).encode()})
         self.done = np.zeros(definition.flights, dtype=bool)
-        self._tables: list = []
+        self._tables: list[tuple[int, pa.Table]] = []
 
-    def add(self, rows: list[dict]) -> None:
+    def add(self, rows: list[dict[str, Any]]) -> None:
         """Take rows of consecutive flights."""
         import pyarrow as pa
 
         self.done[[row["index"] for row in rows]] = True
         self._keep(pa.Table.from_pylist(rows, schema=self.schema), rows[0]["index"])
 
-    def _keep(self, table, first) -> None:
+    def _keep(self, table: pa.Table, first: int) -> None:
         self._tables.append((first, table))
 
     def close(self) -> None:
@@ -52,14 +57,16 @@ class MemoryStore:
         tables = [table for _, table in sorted(self._tables, key=lambda item: item[0])]
         self._tables = [(0, pa.concat_tables(tables).combine_chunks() if tables else self.schema.empty_table())]
 
-    def columns(self, names=None):
-        """The table, or only some columns of it. pyarrow.Table"""
+    def columns(self, names: list[str] | None = None) -> pa.Table:
+        """The table, or only some columns of it."""
         table = self._tables[0][1]
         return table if names is None else table.select(names)
 
 
 class FileStore(MemoryStore):
     """Rows that end up in a parquet file; what an earlier, unfinished sweep of the same definition left is taken up."""
+
+    path: Path
 
     def __init__(self, definition: Definition, path: Path):
         super().__init__(definition)
@@ -84,7 +91,7 @@ class FileStore(MemoryStore):
         except OSError as error:
             raise SweepError(f"cannot write {self._parts}: {(error.strerror or str(error)).lower()}") from None
 
-    def _facts_of_table(self) -> dict | None:
+    def _facts_of_table(self) -> dict[str, Any]:
         import pyarrow as pa
         import pyarrow.parquet as pq
 
@@ -96,8 +103,8 @@ class FileStore(MemoryStore):
             raise SweepError(f"{self.path} exists and is not the table of a sweep: name another file")
         return json.loads(facts)
 
-    def _same(self, definition: Definition, old: dict) -> None:
-        old, new = _told(old), _told(definition.facts())
+    def _same(self, definition: Definition, facts: dict[str, Any]) -> None:
+        old, new = _told(facts), _told(definition.facts())
         changed = [
             f"{key} was {_short(old.get(key))} and is {_short(new.get(key))}"
             for key in dict.fromkeys([*new, *old])
@@ -112,7 +119,7 @@ class FileStore(MemoryStore):
     def _files(self) -> list[Path]:
         return [self.path] * self.path.exists() + sorted(self._parts.glob("*.parquet"))
 
-    def _keep(self, table, first) -> None:
+    def _keep(self, table: pa.Table, first: int) -> None:
         try:
             _whole(self._parts / f"{first:012d}-{len(table)}.parquet", lambda part: _write(part, table))
         except OSError as error:
@@ -131,9 +138,10 @@ class FileStore(MemoryStore):
             (first, stop, file, i) for file in self._files() for i, (first, stop) in enumerate(_groups(file))
         )
 
-        def merge(part):
+        def merge(part: Path) -> None:
             with pq.ParquetWriter(part, self.schema, compression="zstd") as writer:
-                waiting, rows, end = [], 0, 0
+                waiting: list[pa.Table] = []
+                rows, end = 0, 0
                 for first, stop, file, i in groups:
                     if stop <= end:  # known from another file already
                         continue
@@ -154,8 +162,8 @@ class FileStore(MemoryStore):
             raise SweepError(f"cannot write {self.path}: {(error.strerror or str(error)).lower()}") from None
         shutil.rmtree(self._parts, ignore_errors=True)
 
-    def columns(self, names=None):
-        """The table, or only some columns of it, read from the file. pyarrow.Table"""
+    def columns(self, names: list[str] | None = None) -> pa.Table:
+        """The table, or only some columns of it, read from the file."""
         import pyarrow.parquet as pq
 
         if not self.path.exists():
@@ -190,13 +198,13 @@ def _groups(file: Path) -> list[tuple[int, int]]:
     ]
 
 
-def _write(path: Path, table) -> None:
+def _write(path: Path, table: pa.Table) -> None:
     import pyarrow.parquet as pq
 
     pq.write_table(table, path, compression="zstd", row_group_size=max(len(table), 1))
 
 
-def _whole(path: Path, write) -> None:
+def _whole(path: Path, write: Callable[[Path], object]) -> None:
     """Write under a temporary name first, so that a file appears whole."""
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
@@ -206,13 +214,13 @@ def _whole(path: Path, write) -> None:
         part.unlink(missing_ok=True)
 
 
-def _told(facts: dict) -> dict:
+def _told(facts: dict[str, Any]) -> dict[str, Any]:
     """Facts of a definition, each with a name by which a person knows it."""
     inner = {**facts.get("values", {}), **{f"vary {key}": words for key, words in facts.get("vary", {}).items()}}
     return {key: value for key, value in facts.items() if key not in ("values", "vary")} | inner
 
 
-def _short(value) -> str:
+def _short(value: Any) -> str:
     if value is None:
         return "not there"
     text = json.dumps(value)

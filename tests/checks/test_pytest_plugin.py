@@ -145,7 +145,7 @@ def test_pictures_of_both_are_left_where_there_is_vulkan(project, pytester):
 def test_the_plugin_costs_pytest_nothing_to_speak_of():
     code = (
         "import pytest, sys, time; before = set(sys.modules); start = time.process_time(); "
-        "import sailviz.pytest_plugin; seconds = time.process_time() - start; "
+        "import sailviz.checks.pytest_plugin; seconds = time.process_time() - start; "
         "print(seconds, *(name for name in set(sys.modules) - before if '.' not in name))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

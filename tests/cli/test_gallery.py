@@ -5,8 +5,8 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from sailviz.cli.gallery import POSES, Pose, file_names, gallery, markdown, pose_of, squeezed
-from sailviz.cli.main import main
+from sailviz.cli import main, readme_pictures
+from sailviz.cli.readme_pictures import POSES, Pose, file_names, markdown, pose_of, squeezed, take
 from sailviz.recording.views.screenshot import has_vulkan
 from sailviz.shipped import shipped_scenes
 
@@ -50,7 +50,7 @@ def test_squeezing_takes_fewer_colours_until_a_picture_is_small_enough(tmp_path)
 @pytest.mark.skipif(not has_vulkan(), reason="no Vulkan driver: apt-get install libvulkan1 mesa-vulkan-drivers")
 def test_the_gallery_makes_a_picture_and_its_table(tmp_path):
     done = []
-    made = gallery(tmp_path, ["spirals/logarithmic"], size=(320, 180), progress=done.append)
+    made = take(tmp_path, ["spirals/logarithmic"], size=(320, 180), progress=done.append)
     assert made == {"spirals/logarithmic": tmp_path / "logarithmic.png"}
     assert done == [1.0]
     assert [path.name for path in tmp_path.iterdir()] == ["logarithmic.png"]
@@ -62,9 +62,7 @@ def test_the_gallery_makes_a_picture_and_its_table(tmp_path):
 
 
 def test_an_unknown_scene_is_refused(tmp_path, monkeypatch):
-    from sailviz.cli import gallery as module
-
-    monkeypatch.setattr(module, "check_vulkan", lambda: None)
+    monkeypatch.setattr(readme_pictures, "check_vulkan", lambda: None)
     result = CliRunner().invoke(main, ["gallery", "spirals/nowhere", "-o", str(tmp_path)])
     assert result.exit_code == 2
     assert "no shipped scene spirals/nowhere" in result.stderr

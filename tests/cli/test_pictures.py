@@ -4,7 +4,7 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from sailviz.cli.main import main
+from sailviz.cli import main
 from sailviz.recording.views import screenshot as shot
 from sailviz.recording.views.screenshot import has_vulkan
 

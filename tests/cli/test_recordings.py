@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from sailviz.cli.main import main
+from sailviz.cli import main
 from sailviz.constants import AU, MU_SUN
 from sailviz.elements import state
 from sailviz.recording.writer import record_trajectory

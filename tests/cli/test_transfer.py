@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 import sailviz
-from sailviz.cli.main import main
+from sailviz.cli import main
 
 
 def ask(*words):

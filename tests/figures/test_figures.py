@@ -66,7 +66,7 @@ def test_wrong_requests_are_refused_in_a_sentence(tmp_path, monkeypatch):
 def test_figures_come_from_the_shell(tmp_path):
     from click.testing import CliRunner
 
-    from sailviz.cli.main import main
+    from sailviz.cli import main
 
     def shell(*words):
         return CliRunner().invoke(main, ["figure", *words])

@@ -29,7 +29,7 @@ def test_wind_fit_says_whose_series_it_shows(tmp_path):
 def test_bad_series_are_refused_before_anything_is_drawn(tmp_path):
     from click.testing import CliRunner
 
-    from sailviz.cli.main import main
+    from sailviz.cli import main
 
     (tmp_path / "bad.csv").write_text("time_h,pressure_Pa\n" + "\n".join(f"{i},2.{i}" for i in range(60)))
     for arguments, sentence in (

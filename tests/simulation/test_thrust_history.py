@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from sailviz import load_scene
-from sailviz.cli.main import main
+from sailviz.cli import main
 from sailviz.constants import AU, DAY, YEAR
 from sailviz.environment.solar_wind.pressure import PHASES
 from sailviz.errors import SceneError

@@ -17,14 +17,15 @@ import pytest
 from click.testing import CliRunner
 
 import sailviz
-from sailviz.cli.main import main
+from sailviz.cli import main
 from sailviz.constants import AU, MU_SUN
 from sailviz.errors import SceneError
 from sailviz.shipped import shipped_sweeps
-from sailviz.sweeps import loop as sweeps
+from sailviz.sweeps import dealing
 from sailviz.sweeps.definition import define
 from sailviz.sweeps.distributions import varied
 from sailviz.sweeps.engines import SerialExecutor
+from sailviz.sweeps.loop import fly_all
 from sailviz.sweeps.store import SweepError
 
 COASTING = {
@@ -157,7 +158,7 @@ def test_a_shipped_sweep_can_be_flown(name):
 
 # ---------------------------------------------------------------- where it is flown
 def test_threads_and_chunks_change_no_number(gusts, monkeypatch):
-    monkeypatch.setattr(sweeps, "CHUNK_SECONDS", 1e-6)
+    monkeypatch.setattr(dealing, "CHUNK_SECONDS", 1e-6)
     with ThreadPoolExecutor(3) as executor:
         assert rows(sailviz.sweep(**GUSTS, executor=executor)) == gusts
 
@@ -217,7 +218,7 @@ def test_a_flight_that_kills_its_process_is_found_and_the_rest_is_flown(monkeypa
                 future.set_exception(BrokenProcessPool())
             return future
 
-    monkeypatch.setattr(sweeps, "processes", lambda workers: Pool())
+    monkeypatch.setattr(dealing, "processes", lambda workers: Pool())
     found = sailviz.sweep(**GUSTS)
     assert [i for i, status in enumerate(found.table["status"]) if status == "failed"] == [5]
     assert "died" in found.table["reason"][5]
@@ -335,7 +336,7 @@ def _begin(folder, *words):
     """A sweep in a process of its own, once two parts of it are on disk."""
     environment = os.environ | {"PYTHONPATH": str(Path(sailviz.__file__).parents[1])}
     begun = subprocess.Popen(
-        [sys.executable, "-m", "sailviz.cli.main", "sweep", *LONG, *words],
+        [sys.executable, "-m", "sailviz", "sweep", *LONG, *words],
         cwd=folder,
         env=environment,
         stderr=subprocess.PIPE,
@@ -358,7 +359,7 @@ def test_a_killed_sweep_goes_on_where_it_stopped_and_leaves_no_process_behind(tm
     begun.stderr.close()
     assert not (tmp_path / "long.parquet").exists()
     definition, _ = define(LONG[0], {"steering.pitch_deg": "20:40:160"}, report=["time_d@end"], values={"expect": []})
-    found = sweeps.fly_all(definition, engine_name="threads", workers=2, path=tmp_path / "long.parquet")
+    found = fly_all(definition, engine="threads", workers=2, path=tmp_path / "long.parquet")
     assert 0 < found.resumed < found.flights
     assert rows(found) == long_rows
     assert [path.name for path in tmp_path.iterdir()] == ["long.parquet"]

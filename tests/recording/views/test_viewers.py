@@ -16,7 +16,7 @@ import pytest
 from click.testing import CliRunner
 from PIL import Image
 
-from sailviz.cli.main import main
+from sailviz.cli import main
 from sailviz.errors import RecordingError
 from sailviz.recording import record
 from sailviz.recording.drawing.style import TARGET

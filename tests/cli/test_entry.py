@@ -1,17 +1,23 @@
 """The shell's promises: exit codes, messages, whole files or none, and what is not imported."""
 
+import ast
+import importlib
 import json
+import pkgutil
 import signal
 import subprocess
 import sys
 import time
 import tomllib
+from pathlib import Path
 
 import jsonschema
 import pytest
 from click.testing import CliRunner
 
-from sailviz.cli.main import main
+import sailviz
+from sailviz import cli
+from sailviz.cli import entry, main
 from sailviz.shipped import shipped_scenes
 
 SHORT = ("--set", "propagation.duration_d=30", "--set", "propagation.outputs=20", "--set", "expect=[]")
@@ -36,6 +42,39 @@ def shell(tmp_path, monkeypatch):
     """Call sailviz in an empty folder."""
     monkeypatch.chdir(tmp_path)
     return lambda *words: CliRunner().invoke(main, [str(word) for word in words], catch_exceptions=False)
+
+
+def test_the_entry_is_one_function_however_it_is_reached():
+    for module in pkgutil.iter_modules(cli.__path__):  # a module called main would take the function's place
+        importlib.import_module(f"sailviz.cli.{module.name}")
+    assert cli.main is main is entry.main
+    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
+    assert project["scripts"] == {"sailviz": "sailviz.cli.entry:main"}
+    done = subprocess.run([sys.executable, "-m", "sailviz", "list"], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[0].startswith("deorbit/aalto-1")
+
+
+def test_every_command_lives_in_a_file_of_its_name():
+    assert {name: command.callback.__module__ for name, command in main.commands.items()} == {
+        name: f"sailviz.cli.{name}" for name in main.commands
+    }
+
+
+def test_click_is_known_to_the_command_line_only():
+    package = Path(sailviz.__file__).parent
+    knowing = {file.relative_to(package).parts[0] for file in package.rglob("*.py") if "click" in imported_by(file)}
+    assert knowing == {"cli"}
+
+
+def imported_by(file):
+    """Top-level names of what a source file imports, anywhere in it."""
+    found = set()
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name.partition(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            found.add(node.module.partition(".")[0])
+    return found
 
 
 def test_a_run_records_judges_and_says_how_to_look(shell, tmp_path):

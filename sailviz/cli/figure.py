@@ -23,7 +23,15 @@ from sailviz.cli.shared import BAD_INPUT
     help="Solar wind for wind-fit: .csv, .npz or .parquet with utc or time_h and pressure_nPa, or an OMNI2 text.",
 )
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
-def figure(figures, listing, output, style, dpi, series, quiet):
+def figure(
+    figures: tuple[str, ...],
+    listing: bool,
+    output: str | None,
+    style: str,
+    dpi: int,
+    series: str | None,
+    quiet: bool,
+) -> None:
     """Draw figures: the thesis' own from our functions, and maps of stability, validity, spirals and escape."""
     from sailviz.figures import FigureError, draw, names, title
 
@@ -50,6 +58,3 @@ def figure(figures, listing, output, style, dpi, series, quiet):
     except (FigureError, OSError) as error:
         click.echo(str(error), err=True)
         raise click.exceptions.Exit(BAD_INPUT) from None
-
-
-COMMANDS = (figure,)

@@ -1,16 +1,28 @@
-"""The commands that show: picture, view, web, gallery. Heavy modules are imported inside."""
+"""The command that takes pictures and makes movies. Heavy modules are imported inside."""
 
 from __future__ import annotations
 
 import re
 import tempfile
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from sailviz.cli.shared import collecting_failures, progress_bar, say_if_compiling, set_option, values_of
+from sailviz.cli.shared import (
+    collecting_failures,
+    make_folder,
+    progress_bar,
+    say_if_compiling,
+    set_option,
+    values_of,
+)
 from sailviz.errors import RecordingError
+
+if TYPE_CHECKING:
+    from sailviz.recording import MovieReport, PictureReport
 
 VIEW_FAILED = 1
 MAGIC = b"RRF2"  # the first bytes of a recording
@@ -22,7 +34,8 @@ class Size(click.ParamType):
 
     name = "size"
 
-    def convert(self, value, parameter, context):
+    def convert(self, value: Any, parameter: click.Parameter | None, context: click.Context | None) -> tuple[int, int]:
+        """(width, height) from what was written."""
         if isinstance(value, tuple):
             return value
         found = re.fullmatch(r"(\d{2,5})[x×](\d{2,5})", value.strip())
@@ -46,7 +59,19 @@ class Size(click.ParamType):
 @click.option("--fps", type=float, default=12.0, show_default=True, help="Pictures in a second of the movie.")
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
 @set_option
-def picture(sources, output, view, at, size, bare, film, seconds, fps, quiet, settings):
+def picture(
+    sources: tuple[str, ...],
+    output: str | None,
+    view: str | None,
+    at: str,
+    size: tuple[int, int] | None,
+    bare: bool,
+    film: str | None,
+    seconds: float,
+    fps: float,
+    quiet: bool,
+    settings: tuple[str, ...],
+) -> None:
     """Take pictures or make movies of recordings and scenes, without a screen.
 
     A scene is simulated first. Exit code 1 where a view of the recording complains.
@@ -59,6 +84,7 @@ def picture(sources, output, view, at, size, bare, film, seconds, fps, quiet, se
         _check_before(at, film)
         for source, out in zip(sources, _outputs(sources, output, film), strict=True):
             with failures.next(source), _recording_of(source, settings, quiet) as path:
+                report: PictureReport | MovieReport
                 if film:
                     report = _film(path, out, source, view, size or MOVIE_SIZE, seconds, fps, quiet)
                 else:
@@ -70,7 +96,7 @@ def picture(sources, output, view, at, size, bare, film, seconds, fps, quiet, se
                     click.echo(_said(report))
 
 
-def _check_before(at, film) -> None:
+def _check_before(at: str, film: str | None) -> None:
     """Everything that can be known to fail before a scene is simulated."""
     from sailviz.recording.views.instant import moment
     from sailviz.recording.views.movie import check_format
@@ -82,7 +108,7 @@ def _check_before(at, film) -> None:
         check_format(film)
 
 
-def _outputs(sources, output, film) -> list[Path]:
+def _outputs(sources: Sequence[str], output: str | None, film: str | None) -> list[Path]:
     """Where the picture of each source goes; folders are made."""
     if film:
         files = [Path(film)]
@@ -95,44 +121,46 @@ def _outputs(sources, output, film) -> list[Path]:
         twice = next((file.name for file in files if files.count(file) > 1), None)
         if twice:
             raise RecordingError(f"two pictures would have the same name, {twice}: take them one by one with -o")
-    _make(files[0].parent)
+    make_folder(files[0].parent)
     return files
 
 
-def _make(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RecordingError(f"cannot make the folder {folder}: {error.strerror.lower()}") from None
-
-
-def _shoot(path, out, view, at, size, bare):
+def _shoot(path: Path, out: Path, view: str | None, at: str, size: tuple[int, int], bare: bool) -> PictureReport:
     from dataclasses import replace
 
+    from sailviz.recording.views import screenshot
     from sailviz.recording.views.instant import fraction_of
     from sailviz.recording.views.movie import written_whole
-    from sailviz.recording.views.screenshot import picture
 
-    at = fraction_of(path, at)
+    fraction = fraction_of(path, at)
     with written_whole(out) as part:
-        report = picture(path, part, view=view, at=at, size=size, panels=not bare)
+        report = screenshot.picture(path, part, view=view, at=fraction, size=size, panels=not bare)
     return replace(report, path=out)
 
 
-def _film(path, out, source, view, size, seconds, fps, quiet):
+def _film(
+    path: Path,
+    out: Path,
+    source: str,
+    view: str | None,
+    size: tuple[int, int],
+    seconds: float,
+    fps: float,
+    quiet: bool,
+) -> MovieReport:
     from sailviz.recording.views.movie import make_movie
 
     with progress_bar(f"Movie of {source}", quiet) as progress:
         return make_movie(path, out, view=view, size=size, seconds=seconds, fps=fps, progress=progress)
 
 
-def _said(report) -> str:
+def _said(report: PictureReport | MovieReport) -> str:
     width, height = report.size
     frames = f", {report.frames} frames" if hasattr(report, "frames") else ""
     return f"{report.path}: {width} x {height}{frames}, {report.path.stat().st_size / 1e3:,.0f} kB"
 
 
-def is_recording(source) -> bool:
+def is_recording(source: str) -> bool:
     """Whether a source is a recording, by its ending or its first bytes, rather than a scene."""
     path = Path(source)
     if path.suffix == ".rrd":
@@ -145,18 +173,18 @@ def is_recording(source) -> bool:
 
 
 @contextmanager
-def _recording_of(source, settings, quiet):
+def _recording_of(source: str, settings: Sequence[str], quiet: bool) -> Iterator[Path]:
     """The path of a recording: the source itself, or a temporary one of the scene."""
     if is_recording(source):
         if settings:
             raise RecordingError(f"{source} is a recording: --set changes scenes, and this one was flown already")
         yield Path(source)
         return
-    from sailviz.scene.loading import load_scene
+    from sailviz.scene import load_scene
 
     scene = load_scene(source, values_of(settings))
     from sailviz.recording import record
-    from sailviz.simulation.loop import simulate_blocks
+    from sailviz.simulation import simulate_blocks
 
     say_if_compiling(quiet)
     with tempfile.TemporaryDirectory(prefix="sailviz-") as folder:
@@ -164,53 +192,3 @@ def _recording_of(source, settings, quiet):
         with progress_bar(scene.title, quiet) as progress:
             record(simulate_blocks(scene, progress=progress), path)
         yield path
-
-
-@click.command()
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
-@click.option("--no-open", is_flag=True, help="Do not open a browser: print the address only.")
-@click.option("--port", default=0, help="Of the page, e.g. to forward it through ssh; a free one by default.")
-@click.option("--data-port", default=0, help="Of the recordings; a free one by default.")
-def web(files, no_open, port, data_port):
-    """Show recordings in a browser on this machine; works offline. Ctrl-C ends it."""
-    from sailviz.recording.views.viewers import serve
-
-    def started(url):
-        click.echo(url)
-        click.echo("Ctrl-C ends it.", err=True)
-        if not no_open:
-            import webbrowser
-
-            webbrowser.open(url)
-
-    with collecting_failures() as failures, failures.next():
-        serve(*files, port=port, data_port=data_port, started=started)
-
-
-@click.command()
-@click.argument("files", nargs=-1, required=True, metavar="FILE...")
-def view(files):
-    """Open recordings in the native viewer."""
-    from sailviz.recording.views.viewers import open_viewer
-
-    with collecting_failures() as failures, failures.next():
-        open_viewer(*files)
-
-
-@click.command(hidden=True)
-@click.argument("scenes", nargs=-1, metavar="[SCENE...]")
-@click.option("-o", "--output", default="assets/readme", show_default=True, metavar="DIR")
-@click.option("-q", "--quiet", is_flag=True, help="No progress bar.")
-def gallery(scenes, output, quiet):
-    """Take the pictures of the README, one of every shipped scene, and print the table that shows them."""
-    from sailviz.cli.gallery import gallery as take
-    from sailviz.cli.gallery import markdown
-
-    say_if_compiling(quiet)
-    with collecting_failures() as failures, failures.next(), progress_bar("Gallery", quiet) as progress:
-        folder = Path(output)
-        _make(folder)
-        click.echo(markdown(take(folder, scenes, progress=progress)))
-
-
-COMMANDS = (picture, view, web, gallery)

@@ -1,0 +1,26 @@
+"""The command that writes the truth of a recording in a form that other programs read."""
+
+from __future__ import annotations
+
+import click
+
+from sailviz.cli.shared import in_one_sentence
+
+
+@click.command()
+@click.argument("file")
+@click.option(
+    "--to", "form", type=click.Choice(["csv", "parquet", "npz", "oem"]), help="Format; by default the ending of -o."
+)
+@click.option("-o", "--output", metavar="FILE|DIR", help="By default a file named after the recording, in this folder.")
+@click.option(
+    "--entity", "entities", multiple=True, metavar="/ENTITY", help="Only this entity, e.g. /state; repeatable."
+)
+@click.option("--frame", default="", help="Frame of an OEM: EME2000, or ECLIPJ2000 for what circles the Sun.")
+def export(file: str, form: str | None, output: str | None, entities: tuple[str, ...], frame: str) -> None:
+    """Write a recording as CSV, Parquet, numpy archive (npz) or orbit ephemeris message (oem)."""
+    from sailviz import recording
+
+    with in_one_sentence():
+        for path in recording.export(file, output, form or "", entities=entities, frame=frame):
+            click.echo(path)

@@ -1,0 +1,199 @@
+"""The command that flies scenes, records them and judges them. Heavy modules are imported inside."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from sailviz.cli.shared import (
+    EXPECTATION_FAILED,
+    Failures,
+    collecting_failures,
+    make_folder,
+    progress_bar,
+    say_if_compiling,
+    scenes_argument,
+    set_option,
+    values_of,
+)
+from sailviz.errors import PropagationError
+
+if TYPE_CHECKING:
+    from sailviz.checks import Verdict
+    from sailviz.recording import Recorder
+    from sailviz.run import Run
+    from sailviz.scene import Scene
+
+
+@click.command()
+@scenes_argument
+@set_option
+@click.option(
+    "-o", "--output", metavar="FILE|DIR", help="Recording to write, or folder for several; - for standard output."
+)
+@click.option("--view", is_flag=True, help="Watch in the native viewer while it is computed.")
+@click.option("--web", is_flag=True, help="Serve it to a browser on this machine; works offline.")
+@click.option(
+    "--connect", metavar="URL", help="Send it to a viewer that runs already, e.g. rerun+http://host:9876/proxy."
+)
+@click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
+@click.option("--json", "as_json", is_flag=True, help="Print a summary that a script can read.")
+def run(
+    scenes: tuple[str, ...],
+    settings: tuple[str, ...],
+    output: str | None,
+    view: bool,
+    web: bool,
+    connect: str | None,
+    quiet: bool,
+    as_json: bool,
+) -> None:
+    """Propagate scenes, record them, and judge them by what they expect.
+
+    SCENE is a TOML file or the name of a shipped scene. Without -o, --view, --web or --connect the recording goes to
+    NAME.rrd in the current folder.
+    """
+    if sum(map(bool, (view, web, connect))) > 1:
+        raise click.UsageError("--view, --web and --connect exclude each other.")
+    if output == "-" and (len(scenes) > 1 or view or web or connect or as_json):
+        raise click.UsageError("-o - takes one scene and no viewer, and leaves no room for --json.")
+    if len(scenes) > 1 and output and Path(output).suffix:
+        raise click.UsageError("-o names one file, but there are several scenes: give a folder.")
+    quiet = quiet or as_json or output == "-"
+    with collecting_failures(as_json) as failures:
+        for name in scenes:
+            with failures.next(name):
+                values, sinks = values_of(settings), _sinks(name, output, view, web, connect)
+                _run_one(name, values, sinks, quiet, failures)
+
+
+def _sinks(name: str, output: str | None, view: bool, web: bool, connect: str | None) -> Callable[[], list[Any]]:
+    """Where the recording of one scene goes: called once there is something to record, it makes the file's folder and
+    the recorder's sinks."""
+    watched = view or web or bool(connect)
+    file = None
+    if output != "-" and (output or not watched):
+        file = Path(f"{Path(name).stem}.rrd")
+        if output:
+            file = Path(output) if Path(output).suffix and not Path(output).is_dir() else Path(output) / file
+
+    def made() -> list[Any]:
+        from sailviz import recording
+
+        if file is not None:
+            make_folder(file.parent)
+        places: list[Any] = [recording.STDOUT] if output == "-" else [] if file is None else [file]
+        places += [recording.VIEWER] * view + [recording.WEB] * web
+        return places + ([recording.Connect(connect)] if connect else [])
+
+    return made
+
+
+def _run_one(
+    name: str, values: dict[str, Any], sinks: Callable[[], list[Any]], quiet: bool, failures: Failures
+) -> None:
+    from sailviz.scene import load_scene
+
+    scene = load_scene(name, values)
+    from sailviz.checks.expectations import Judge
+
+    say_if_compiling(quiet)
+    judge = Judge(scene)
+    recorder, rows, ended = _flown(scene, sinks, judge.add, quiet)
+    recorded = recorder.finish()
+    verdicts = judge.verdicts()
+    facts = {
+        "scene": name,
+        "title": scene.title,
+        "rows": rows,
+        "duration_s": recorder.time,
+        "ended": ended,
+        "recording": [str(path) for path in recorded.paths],
+        "identity": recorded.identity,
+        "expectations": [_facts(verdict) for verdict in verdicts],
+    }
+    failures.summary(facts)
+    if not quiet:
+        _tell(facts, verdicts)
+    failed = [verdict for verdict in verdicts if not verdict.passed]
+    if failed:
+        failures.worst(EXPECTATION_FAILED)
+        if quiet:
+            for verdict in failed:
+                click.echo(f"{name}: {verdict}", err=True)
+    if recorded.url:
+        click.echo(f"Watch it at {recorded.url} ; Ctrl-C ends it.", err=True)
+        recorded.serve()
+
+
+def _flown(
+    scene: Scene, sinks: Callable[[], list[Any]], judge: Callable[..., None], quiet: bool
+) -> tuple[Recorder, int, str]:
+    """Fly, record and judge a scene block by block -> (recorder that is finished, rows, what ended the run)."""
+    from sailviz.simulation import simulate_blocks
+
+    with progress_bar(scene.title, quiet) as progress:
+        blocks = simulate_blocks(scene, progress=progress)
+        block: Run | None = next(blocks)  # an infeasible scene fails here, before a recording is begun
+        from sailviz.recording import Recorder
+
+        rows, ended = 0, ""
+        with Recorder(*sinks()) as recorder:
+            try:
+                while block is not None:
+                    recorder.add(block)
+                    judge(block)
+                    rows, ended = rows + len(block), block.ended
+                    block = next(blocks, None)
+            except (KeyboardInterrupt, PropagationError):
+                recorder.__exit__(*sys.exc_info())  # finish the file with what there is
+                _say_unfinished(recorder)
+                raise
+            recorder.finish()
+    return recorder, rows, ended
+
+
+def _facts(verdict: Verdict) -> dict[str, Any]:
+    """A verdict for JSON, which has no NaN."""
+    return {
+        "quantity": verdict.quantity,
+        "at": verdict.at,
+        "expected": verdict.expected,
+        "within": verdict.tolerance,
+        "measured": None if verdict.measured != verdict.measured else verdict.measured,
+        "passed": verdict.passed,
+    }
+
+
+def _tell(facts: dict[str, Any], verdicts: list[Verdict]) -> None:
+    from sailviz.checks.expectations import table
+    from sailviz.words import duration
+
+    end = f", ended by {facts['ended']}" if facts["ended"] else ""
+    click.echo(f"{facts['title']}: {duration(facts['duration_s'])}, {facts['rows']:,} rows{end}")
+    if verdicts:
+        click.echo(table(verdicts))
+    for path in facts["recording"]:
+        click.echo(f"Recorded {path}; look at it with: {_rerun()} {path}")
+
+
+def _rerun() -> str:
+    """How this person calls the viewer: by its name if the shell finds it, else by its path."""
+    import shutil
+
+    if shutil.which("rerun"):
+        return "rerun"
+    beside = Path(sys.executable).with_name("rerun")
+    return os.path.relpath(beside) if Path.cwd() in beside.parents else str(beside)
+
+
+def _say_unfinished(recorder: Recorder) -> None:
+    from sailviz.words import duration
+
+    for path in recorder.recorded.paths if recorder.recorded else ():
+        click.echo(f"Unfinished: {path} is valid up to {duration(recorder.time)} and says so.", err=True)

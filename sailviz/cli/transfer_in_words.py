@@ -1,0 +1,102 @@
+"""What the search for a transfer found, in words for a person and in values for a script."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from sailviz.constants import AU, DAY
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from sailviz.transfers import Solution
+
+
+def words(found: Solution) -> Iterator[str]:
+    """What was found, line by line."""
+    import numpy as np
+
+    from sailviz.design.minimum_time import Rendezvous
+    from sailviz.transfers import device_words, path_of
+
+    flight = found.flight
+    craft = device_words(flight.device)
+    ways = {
+        "circles": "between circles in one plane",
+        "orbits": "between orbits in space, both anomalies free",
+        "rendezvous": "to meet the planet where it is",
+    }
+    yield f"{found.origin.name} to {found.target.name}, {ways[found.kind]}"
+    yield f"{craft}, {flight.characteristic_acceleration * 1e3:g} mm/s² at 1 au"
+    if not flight.feasible:
+        yield f"  No flight found: {flight.reason.removeprefix('no flight found: ')}."
+        return
+    rows = [("flight time", f"{flight.time / DAY:.6f} d, {flight.revolutions:.4f} revolutions about the Sun")]
+    if isinstance(flight, Rendezvous):
+        rows += [("departure", _day(flight.departure)), ("arrival", _day(flight.arrival))]
+    elif found.kind == "orbits":
+        anomalies = f"{np.degrees(flight.departure_anomaly):.4f}° and {np.degrees(flight.arrival_anomaly):.4f}°"
+        rows += [("true anomalies", f"{anomalies} at departure and arrival")]
+    rows += [("costates", " ".join(f"{x:.10g}" for x in flight.costates))]
+    of = "radius, radial and transverse speed; mu = r0 = 1" if found.kind == "circles" else "position, velocity; 1 au"
+    rows += [("", f"of {of}, H = +1: minus the days won per unit, in {_unit(found):.4f} d")]
+    position, _, switches = path_of(flight)
+    rows += [("closest to the Sun", f"{np.linalg.norm(position, axis=1).min() / AU:.4f} au")]
+    if len(switches):
+        rows += [("thrust switches at", ", ".join(f"{t / DAY:.3f}" for t in switches) + " d")]
+    rows += [("residual", f"{flight.residual:.1e}, Hamiltonian drift {flight.hamiltonian_drift:.1e}")]
+    rows += [("local solutions", f"{flight.solutions} found")]
+    for name, value in rows:
+        yield f"  {name:<19}{value}"
+    yield "  " + flight.claim[0].upper() + flight.claim[1:] + ("" if flight.claim.endswith(".") else ".")
+    if isinstance(flight, Rendezvous) and flight.window is not None:
+        yield "  Leaving on       takes, days"
+        for day, time in zip(flight.window.departures, flight.window.times, strict=True):
+            took = f"{time / DAY:9.3f}" if np.isfinite(time) else "none found"
+            yield f"  {np.datetime_as_string(day, 'D')}       {took}"
+
+
+def _unit(found: Solution) -> float:
+    """The canonical unit of time, d."""
+    from sailviz.design.minimum_time.state_costate import TIME_UNIT
+
+    radius = found.origin.orbit.semi_major_axis / AU if found.kind == "circles" else 1.0
+    return radius**1.5 * TIME_UNIT / DAY
+
+
+def _day(moment: np.datetime64) -> str:
+    import numpy as np
+
+    return np.datetime_as_string(moment, "m").replace("T", " ") + " UTC"
+
+
+def summary(found: Solution) -> dict[str, Any]:
+    """What was found, for JSON."""
+    from sailviz.design.minimum_time import Rendezvous
+
+    flight = found.flight
+    values: dict[str, Any] = {
+        "kind": found.kind,
+        "from": found.origin.name,
+        "to": found.target.name,
+        "sail": flight.device,
+        "characteristic_acceleration_mm_s2": flight.characteristic_acceleration * 1e3,
+        "found": flight.feasible,
+        "claim": flight.claim,
+        "time_d": _known(flight.time / DAY),
+        "revolutions": _known(flight.revolutions),
+        "costates": [_known(x) for x in flight.costates],
+        "residual": _known(flight.residual),
+        "hamiltonian_drift": _known(flight.hamiltonian_drift),
+        "local_solutions": flight.solutions,
+    }
+    if isinstance(flight, Rendezvous):
+        values |= {"departure": str(flight.departure), "arrival": str(flight.arrival)}
+    return values
+
+
+def _known(value: float) -> float | None:
+    """A number for JSON, which has no NaN."""
+    return float(value) if math.isfinite(value) else None

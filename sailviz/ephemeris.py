@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sailviz import elements as orbital
 from sailviz.constants import AU, DAY, MU_SUN, YEAR
+from sailviz.elements import Elements, state
 
 if TYPE_CHECKING:
     from datetime import datetime
@@ -108,7 +108,7 @@ def planet_position(name: str, epoch: Epoch, time: ArrayLike, source: str = "mea
     a, e, i, node, argument, mean = planet_elements(name, seconds_since_j2000(epoch) + np.asarray(time, dtype=float))
     half = eccentric_anomaly(mean, e) / 2
     anomaly = 2 * np.arctan2(np.sqrt(1 + e) * np.sin(half), np.sqrt(1 - e) * np.cos(half))
-    return orbital.state(a, e, i, node, argument, anomaly, MU_SUN)[0]
+    return state(a, e, i, node, argument, anomaly, MU_SUN)[0]
 
 
 _DE421_NUMBERS = {"Mercury": 1, "Venus": 2, "Earth": 3, "Mars": 4, "Jupiter": 5, "Saturn": 6}
@@ -142,19 +142,19 @@ def _de421(name: str, seconds: np.ndarray) -> np.ndarray:
     return np.column_stack([x, c * y + s * z, c * z - s * y])
 
 
-def planet_ellipse(name: str, epoch: Epoch | None = None) -> orbital.Elements:
+def planet_ellipse(name: str, epoch: Epoch | None = None) -> Elements:
     """The planet's orbit as mean elements at the epoch (J2000 without one), scalars; the true anomaly is left 0."""
     seconds = 0.0 if epoch is None else seconds_since_j2000(epoch)
     a, e, i, raan, argument, _ = planet_elements(name, seconds)
     scalars: list[Any] = [*(float(value[0]) for value in (a, e, i, raan, argument)), 0.0]
-    return orbital.Elements(*scalars)
+    return Elements(*scalars)
 
 
 def planet_orbit(name: str, epoch: Epoch | None = None, points: int = 361) -> np.ndarray:
     """The planet's orbit as a closed curve (points, 3) m, with its elements at the epoch (J2000 without one)."""
     e = planet_ellipse(name, epoch)
     turn = np.linspace(0, 2 * np.pi, points)
-    return orbital.state(e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument, turn, MU_SUN)[0]
+    return state(e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument, turn, MU_SUN)[0]
 
 
 # The Sun of the Astronomical Almanac's low-precision formulae (section C): deg at J2000 and deg per day

@@ -15,10 +15,10 @@ from scipy.integrate import quad
 
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import ENERGY, STOP, watch
-from sailviz.steering import attitude as law
+from sailviz.steering import attitude
 
 THRESHOLD = 1 / 8  # radial acceleration over mu / r0^2 that must be exceeded to escape: (2.14)
-LAWS = {"radial": law.RADIAL, "circumferential": law.TRANSVERSE, "tangential": law.TANGENTIAL}
+LAWS = {"radial": attitude.RADIAL, "circumferential": attitude.TRANSVERSE, "tangential": attitude.TANGENTIAL}
 TOLERANCE = 1e-13  # of the integrations
 BLOCK = 8192
 

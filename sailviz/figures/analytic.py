@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.colors import LogNorm
 
-from sailviz.design import special_thrust, spirals
-from sailviz.design.asymptotic import solution as asymptotic
+from sailviz.design import asymptotic, special_thrust, spirals
 from sailviz.design.displaced.force_shape import force_shape
 
 CIRCLE = [0.0, 0.0, 1.0]

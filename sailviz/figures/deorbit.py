@@ -8,8 +8,8 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter
 
 from sailviz.constants import DAY, YEAR
+from sailviz.design import decay
 from sailviz.design.decay import disposal
-from sailviz.design.decay import quasi_circular as decay
 from sailviz.environment import atmosphere
 from sailviz.propulsion import plasma_brake
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from sailviz.constants import AU, GRAVITY_AT_1_AU
-from sailviz.design.displaced import orbits as displaced
+from sailviz.design import displaced
 from sailviz.propulsion.electric_sail import CONE_MAX
 
 PHI_MAX = np.degrees(CONE_MAX)

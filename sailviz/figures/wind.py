@@ -6,13 +6,13 @@ import numpy as np
 
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN, YEAR
 from sailviz.design.minimum_time.smoothed import smoothed_transfer
-from sailviz.environment.solar_wind import pressure as solar_wind
 from sailviz.environment.solar_wind.laws import Gamma
+from sailviz.environment.solar_wind.pressure import CORRELATION_TIME
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
-from sailviz.propulsion import voltage_control as control
+from sailviz.propulsion import voltage_control
 from sailviz.propulsion.electric_sail import FINAL, PITCH_LIMIT
-from sailviz.steering import attitude as steering
+from sailviz.steering import attitude
 from sailviz.uncertainty import chaos, wind
 from sailviz.uncertainty.covariance import linear
 from sailviz.uncertainty.ensembles import RandomWind, fly_ensemble, fly_factors
@@ -77,7 +77,7 @@ def wind_fit(pen, density, rarity, memory, series=None):
     shown = np.where(measured, pressure, np.nan)
     for function, word, color in ((np.log, "ln p", s.series[0]), (np.sqrt, "√p", s.series[1])):
         memory.plot(days, wind.autocorrelation(function(shown), ahead), color=color, label=word)
-    rate = solar_wind.CORRELATION_TIME / 86400
+    rate = CORRELATION_TIME / 86400
     memory.plot(days, np.exp(-days / rate), color=s.ink, linestyle=(0, (1, 2)), linewidth=1.4, label="exp(−t / 17 h)")
     memory.axhline(np.exp(-1), color=s.quiet, linewidth=0.8)
     memory.set(xscale="log", xlabel="apart [d]", ylabel="autocorrelation", ylim=(-0.15, 1.02))
@@ -93,7 +93,7 @@ def _distance(case, pressure, times):
         MU_SUN,
         device=dynamics.ELECTRIC_SAIL,
         device_parameters=(a_c * 1e-3, FINAL, PITCH_LIMIT),
-        steering=steering.ORBITAL,
+        steering=attitude.ORBITAL,
         steering_parameters=(np.cos(np.radians(pitch)), np.sin(np.radians(pitch)), 0.0),
     )
     out = np.empty((len(pressure), 6, len(times)))
@@ -166,12 +166,12 @@ def arrival_dispersion(pen, scatter, bars):
     transfer = smoothed_transfer(MARS[0], 1e-3 / GRAVITY_AT_1_AU, MARS[1], MARS[2], HOUR / tu)
     steps, duration = len(transfer.pitch), transfer.time * tu
     times = duration / steps * np.arange(steps)
-    table = steering.table(times, transfer.pitch, np.full(steps, np.pi / 2), transfer.throttle, "hold")
+    table = attitude.table(times, transfer.pitch, np.full(steps, np.pi / 2), transfer.throttle, "hold")
     start = (AU, 0.0, 0.0), (0.0, np.sqrt(MU_SUN / AU), 0.0), duration
     turn = np.linspace(0, 2 * np.pi, 181)
     spreads = []
     for (word, law), color in zip(CONTROLS.items(), (s.series[1], s.series[2], s.series[3]), strict=True):
-        row = control.row(reference_pressure=HOURLY.mean, **law)
+        row = voltage_control.row(reference_pressure=HOURLY.mean, **law)
         gusts = RandomWind(HOURLY, "redrawn", DAY)
         found = fly_ensemble(
             *start, wind=gusts, control=row, flights=FLIGHTS, seed=2018, table=table, outputs=2, keep=0

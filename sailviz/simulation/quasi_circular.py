@@ -11,7 +11,7 @@ import numpy as np
 
 from sailviz import elements as orbital
 from sailviz.constants import FLATTENING_EARTH, J2_EARTH, MU_EARTH, RADIUS_EARTH
-from sailviz.design.decay import quasi_circular as decay
+from sailviz.design import decay
 from sailviz.environment import atmosphere, ionosphere
 from sailviz.errors import Fault, SceneError
 from sailviz.propulsion.plasma_brake import force_per_length, spin_factor

@@ -9,8 +9,7 @@ import numpy as np
 from sailviz import elements as orbital
 from sailviz import ephemeris
 from sailviz.constants import AU, DAY, J2_EARTH, MU_SUN, RADIUS_EARTH
-from sailviz.design import spirals
-from sailviz.design.displaced import orbits as displaced
+from sailviz.design import displaced, spirals
 from sailviz.environment.sun import sun_parameters
 from sailviz.errors import Fault, SceneError
 from sailviz.scene.start import DesignedStart

@@ -18,11 +18,10 @@ from sailviz.propagate.ensemble.draws import DRAWN, GIVEN, REPLAYED
 from sailviz.propagate.ensemble.flights import LINEAR, ROOT, SEEN, Wind, covariance, fly, percentiles
 from sailviz.propagate.ensemble.motion import MERIDIAN, ORBITAL, PLANE
 from sailviz.propagate.ensemble.segments import nominal, refined, segments
-from sailviz.propulsion import electric_sail, solar_sail
-from sailviz.propulsion import voltage_control as voltage
+from sailviz.propulsion import electric_sail, solar_sail, voltage_control
 from sailviz.propulsion.electric_sail import MODELS
 from sailviz.propulsion.solar_sail import FILMS, Film
-from sailviz.steering import attitude as laws
+from sailviz.steering import attitude
 
 LEVELS = (5.0, 25.0, 50.0, 75.0, 95.0)
 _DEVIATES = np.linspace(-8.5, 8.5, 8193)  # a 53-bit number lies within +-8.3; 2e-7 of the pressure between entries
@@ -147,7 +146,7 @@ def _axes(position, velocity, planar):
 
 def _strength(device, characteristic_acceleration, model, pitch, clock, throttle):
     """(k, 6) accelerations at 1 au along r, t, h, m/s2: those that go as 1/r, then those that go as 1/r2."""
-    normal = np.column_stack(laws.direction_parameters(pitch, clock))
+    normal = np.column_stack(attitude.direction_parameters(pitch, clock))
     position = np.tile([AU, 0.0, 0.0], (len(normal), 1))
     out = np.zeros((len(normal), 6))
     if device == "electric-sail":
@@ -264,7 +263,7 @@ def fly_ensemble(
         raise ValueError(f"a seed is an integer from 0 to 2^63 - 1, not {seed}")
     if frame not in _FRAMES:
         raise ValueError(f"a frame is {' or '.join(_FRAMES)}, not {frame!r}")
-    if control[voltage.POWER] > 0 or control[voltage.KIND] == voltage.CONSTANT_POWER:
+    if control[voltage_control.POWER] > 0 or control[voltage_control.KIND] == voltage_control.CONSTANT_POWER:
         raise ValueError("a limit on the gun's power needs the density of the wind, which ensembles do not draw")
     if np.ndim(outputs):
         outputs = np.asarray(outputs, dtype=float)
@@ -287,12 +286,12 @@ def fly_ensemble(
     unit = long / fast
 
     control = control.copy()
-    control[voltage.MU] = mu
+    control[voltage_control.MU] = mu
     own = control.copy()
-    own[voltage.MU] = 1.0
-    fixed = not electric or control[voltage.KIND] == voltage.CONSTANT
+    own[voltage_control.MU] = 1.0
+    fixed = not electric or control[voltage_control.KIND] == voltage_control.CONSTANT
     if not electric:
-        own[voltage.KIND] = voltage.CONSTANT
+        own[voltage_control.KIND] = voltage_control.CONSTANT
     plan, times = segments(
         start,
         duration / unit,
@@ -302,7 +301,7 @@ def fly_ensemble(
         strength=strength * long / fast**2,
         outputs=outputs / unit if np.ndim(outputs) else outputs,
         redraw=interval / unit,
-        update=np.inf if fixed else control[voltage.INTERVAL] / unit,
+        update=np.inf if fixed else control[voltage_control.INTERVAL] / unit,
         new_level=yearly / unit,
     )
     aim = None if aim is None else (aim[0] / long, aim[1] / fast)
@@ -310,7 +309,7 @@ def fly_ensemble(
     track = nominal(plan, own)[plan.output >= 0]
     reference = np.zeros((len(times), SEEN))
     reference[:, :6] = track
-    reference[:, 6:] = 1.0, control[voltage.NOMINAL], control[voltage.P_REF]
+    reference[:, 6:] = 1.0, control[voltage_control.NOMINAL], control[voltage_control.P_REF]
     swarm = fly(plan, made, own, reference, flights, threads or _cores(), progress)
     lost = np.flatnonzero(~np.isfinite(swarm.end).all(axis=1))
     if len(lost):
@@ -345,7 +344,7 @@ def fly_ensemble(
         flight_factor=swarm.mean[:, 0],
         flight_voltage=swarm.mean[:, 1],
         flight_saturated=swarm.mean[:, 2],
-        reference_pressure=float(control[voltage.P_REF]),
+        reference_pressure=float(control[voltage_control.P_REF]),
         control=control,
         seed=seed,
         error=error,
@@ -357,7 +356,7 @@ def fly_factors(factors, interval, position, velocity, duration, **options) -> n
     """Ends (k, 6) of an electric sail's flights under given thrust factors (k, n) in steps of `interval` s: cylindrical
     states as in `Ensemble`. options : those of `fly_ensemble` but for wind and control."""
     factors = np.atleast_2d(np.asarray(factors, dtype=float))
-    row = voltage.row(reference_pressure=1.0)
+    row = voltage_control.row(reference_pressure=1.0)
     wind = GivenWind(factors**2, interval)
     options = {"outputs": 2, "keep": 0, **options}
     return fly_ensemble(position, velocity, duration, wind=wind, control=row, flights=len(factors), **options).end

@@ -14,8 +14,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailviz.environment.solar_wind import laws as wind_laws
-from sailviz.environment.solar_wind import pressure as solar_wind
 from sailviz.environment.solar_wind.laws import (
     LAWS,
     Burr,
@@ -27,7 +25,7 @@ from sailviz.environment.solar_wind.laws import (
     Weibull,
     named,
 )
-from sailviz.environment.solar_wind.pressure import KINDS, PHASES
+from sailviz.environment.solar_wind.pressure import KINDS, PHASES, history, yearly_factor
 from sailviz.environment.solar_wind.series import Repairs, Series, check_pressures, read_omni, read_series, series
 
 __all__ = [
@@ -211,20 +209,20 @@ def generate(law, times, seed, kind="redrawn", *, flights=None, first_flight=0, 
 
     law : a Law, a Fit, or a law's word with its parameters among the options, generate("gamma", times, 1, shape=2.593,
     scale=0.7793e-9). times : (n,) s. kind : "constant", "redrawn" (interval=s) or "correlated" (correlation_time=s,
-    17 h), see `solar_wind.history`. flights : flight i is the same however many are drawn; several calls with
+    17 h), see `solar_wind.pressure.history`. flights : flight i is the same however many are drawn; several calls with
     first_flight share the work. yearly : standard deviation of a factor exp(N(0, yearly)) per year; factor : on all
-    pressures, for example `solar_wind.phase_factor("2008-2009")`.
+    pressures, for example `solar_wind.pressure.phase_factor("2008-2009")`.
     """
     of_kind = {key: options.pop(key) for key in ("interval", "correlation_time") if key in options}
     if isinstance(law, str):
-        law = wind_laws.named(law, **options)
+        law = named(law, **options)
     elif options:
         raise ValueError(f"a law that is complete takes no {', '.join(options)}")
     law = law.law if isinstance(law, Fit) else law
 
     def one(flight):
-        p = solar_wind.history(law, times, seed, kind, flight=flight, **of_kind)
-        slow = 1.0 if not yearly else solar_wind.yearly_factor(times, seed, yearly, flight)
+        p = history(law, times, seed, kind, flight=flight, **of_kind)
+        slow = 1.0 if not yearly else yearly_factor(times, seed, yearly, flight)
         return factor * slow * p
 
     if flights is None:

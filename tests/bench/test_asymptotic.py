@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 from sailviz.constants import AU, MU_SUN
-from sailviz.design.asymptotic import legs as asymptotic_legs
+from sailviz.design.asymptotic import legs
 from sailviz.design.asymptotic import solution as asymptotic
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
@@ -50,7 +50,7 @@ def analytic(case, leg, scheme, clock):
     )
 
     def call():
-        status = asymptotic_legs.march(q, 0.0, theta, length, *rest)[0]
+        status = legs.march(q, 0.0, theta, length, *rest)[0]
         h = out[0, 2]
         return 1 / (h * (h + out[0, 0] * np.cos(theta[0]) + out[0, 1] * np.sin(theta[0]))), time[0], status
 
@@ -127,7 +127,7 @@ def cheapest_analytic(case, clock):
             continue
         call = analytic(case, leg, scheme, clock)
         r, t, status = call()
-        good = status == asymptotic_legs.OK and abs(r / case["ref"]["r"] - 1) < ACCURACY
+        good = status == legs.OK and abs(r / case["ref"]["r"] - 1) < ACCURACY
         if good and (clock is None or abs(t / case["ref"]["t"] - 1) < ACCURACY):
             found.append((cost(call, 0.005), leg, scheme, clock))
     return min(found, key=lambda x: x[0]) if found else None
@@ -174,11 +174,9 @@ def test_table_of_costs_per_point():
         thrust = (leg or case["th1"], case["n"], case["er"], case["et"])
 
         def march(clock, case=case, theta=theta, thrust=thrust, scheme=scheme, out=(out, time, mass)):
-            asymptotic_legs.march(
-                np.array(case["q0"]), 0.0, theta, *thrust, clock, asymptotic.SCHEMES[scheme], 0.0, *out
-            )
+            legs.march(np.array(case["q0"]), 0.0, theta, *thrust, clock, asymptotic.SCHEMES[scheme], 0.0, *out)
 
-        costs = [cost(partial(march, clock), 0.05) for clock in (asymptotic_legs.QUADRATURE, asymptotic_legs.NONE)]
+        costs = [cost(partial(march, clock), 0.05) for clock in (legs.QUADRATURE, legs.NONE)]
         few, many = (cost(numeric(case, loosest_numeric(case), points), 0.05) for points in (1, 10_000))
         print(f"{name:>4}  {costs[0] / 1e4:9.1f} {costs[1] / 1e4:9.1f} {(many - few) / 1e4:9.1f}")
 

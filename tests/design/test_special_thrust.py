@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from sailviz.design import special_thrust as st
+from sailviz.design import special_thrust
 
 EXACT = 1e-11  # relative, of the reference integrations
 
@@ -21,7 +21,7 @@ EXACT = 1e-11  # relative, of the reference integrations
     ],
 )
 def test_radial_escape_is_the_tabled_one(a, radius, time, angle):
-    found = st.radial(a)
+    found = special_thrust.radial(a)
     assert found.escape_radius == pytest.approx(radius, abs=0.51e-9)
     assert found.escape_time == pytest.approx(time, abs=0.51e-9)
     assert found.energy(found.escape_radius) == pytest.approx(0, abs=1e-14)
@@ -45,36 +45,36 @@ def test_radial_escape_is_the_tabled_one(a, radius, time, angle):
     ],
 )
 def test_weak_radial_thrust_turns_back_where_and_when_tabled(a, turning, period):
-    found = st.radial(a)
+    found = special_thrust.radial(a)
     assert found.turning_radius == pytest.approx(turning, abs=0.51e-9)
     assert found.period == pytest.approx(period, abs=0.51e-9)
     assert not found.escapes
     assert "turns back at 1" in found.reason or "turns back at 0" in found.reason
-    flown = st.trajectory("radial", a, [0, found.period / 2, found.period])
+    flown = special_thrust.trajectory("radial", a, [0, found.period / 2, found.period])
     assert flown.radius == pytest.approx([1, found.turning_radius, 1], rel=1e-10)
     assert flown.radial_speed == pytest.approx(0, abs=1e-10)
     assert flown.transverse_speed * flown.radius == pytest.approx(1, abs=1e-11)  # (2.13)
 
 
 def test_escape_needs_more_than_the_threshold():
-    at, above, below = st.radial(np.array([0.125, 0.125 * (1 + 1e-9), 0.125 * (1 - 1e-9)])).escapes
+    at, above, below = special_thrust.radial(np.array([0.125, 0.125 * (1 + 1e-9), 0.125 * (1 - 1e-9)])).escapes
     assert (at, above, below) == (False, True, False)
-    threshold = st.radial(0.125)
+    threshold = special_thrust.radial(0.125)
     assert threshold.turning_radius == 2  # approached for ever
     assert threshold.period == np.inf
     assert "twice" in threshold.reason
-    slow, slower = st.radial(np.array([0.125 * (1 + 1e-6), 0.125 * (1 + 1e-8)])).escape_time
+    slow, slower = special_thrust.radial(np.array([0.125 * (1 + 1e-6), 0.125 * (1 + 1e-8)])).escape_time
     # near r = 2 the craft lingers: dt = 4 dy / sqrt(y^2 + d) with a = (1 + d) / 8 and r = 1 + (1 + y)^2
     assert slower - slow == pytest.approx(4 * np.log(100), rel=1e-5)
 
 
 def test_no_thrust_is_the_limit_of_little_thrust():
-    nothing, little = st.radial(0.0), st.radial(1e-9)
+    nothing, little = special_thrust.radial(0.0), special_thrust.radial(1e-9)
     assert nothing.turning_radius == 1
     assert nothing.period == pytest.approx(2 * np.pi, rel=1e-13)
     assert little.period == pytest.approx(2 * np.pi, rel=1e-8)
     assert nothing.exact.radius != nothing.exact.radius  # NaN: no escape
-    for kind in (st.circumferential, st.tangential):
+    for kind in (special_thrust.circumferential, special_thrust.tangential):
         found = kind(0.0)
         assert not found.feasible
         assert np.isnan(found.escape_time)
@@ -83,20 +83,27 @@ def test_no_thrust_is_the_limit_of_little_thrust():
 
 def test_radial_speed_is_the_energy_integral():
     for a in (0.1, 0.2, -0.3):
-        flown = st.trajectory("radial", a, np.linspace(0, 3, 40))
-        assert np.abs(flown.radial_speed) == pytest.approx(st.radial(a).radial_speed(flown.radius), abs=1e-7)
+        flown = special_thrust.trajectory("radial", a, np.linspace(0, 3, 40))
+        assert np.abs(flown.radial_speed) == pytest.approx(
+            special_thrust.radial(a).radial_speed(flown.radius), abs=1e-7
+        )
         energy = (flown.radial_speed**2 + flown.transverse_speed**2) / 2 - 1 / flown.radius
-        assert energy == pytest.approx(st.radial(a).energy(flown.radius), abs=1e-11)  # (2.16), (2.17)
-    assert np.isnan(st.radial(0.1).radial_speed(1.5))
+        assert energy == pytest.approx(special_thrust.radial(a).energy(flown.radius), abs=1e-11)  # (2.16), (2.17)
+    assert np.isnan(special_thrust.radial(0.1).radial_speed(1.5))
 
 
 @pytest.mark.parametrize(
     ("kind", "a", "exact", "formula"),
     [
-        (st.circumferential, 1e-2, (8.509256983, 76.118905570, 26.080618774), (7.071068, 62.393969)),
-        (st.circumferential, 1e-4, (85.326537432, 9244.462389584, 2501.087886926), (70.710678, 8810.792885)),
-        (st.tangential, 1e-2, (8.779452316, 74.534367268, 25.724210847), (4.728708, 54.013670)),
-        (st.tangential, 1e-4, (87.859532752, 9191.792888112, 2500.725965350), (47.287080, 8545.784567)),
+        (special_thrust.circumferential, 1e-2, (8.509256983, 76.118905570, 26.080618774), (7.071068, 62.393969)),
+        (
+            special_thrust.circumferential,
+            1e-4,
+            (85.326537432, 9244.462389584, 2501.087886926),
+            (70.710678, 8810.792885),
+        ),
+        (special_thrust.tangential, 1e-2, (8.779452316, 74.534367268, 25.724210847), (4.728708, 54.013670)),
+        (special_thrust.tangential, 1e-4, (87.859532752, 9191.792888112, 2500.725965350), (47.287080, 8545.784567)),
     ],
 )
 def test_slow_escape_is_the_tabled_one(kind, a, exact, formula):
@@ -110,7 +117,7 @@ def test_slow_escape_is_the_tabled_one(kind, a, exact, formula):
 
 
 def test_estimates_of_the_thesis_miss_the_radius_by_a_constant_factor():
-    for kind, factor in ((st.circumferential, 1.207), (st.tangential, 1.858)):
+    for kind, factor in ((special_thrust.circumferential, 1.207), (special_thrust.tangential, 1.858)):
         found = kind(1e-5)
         assert found.exact.radius / found.escape_radius == pytest.approx(factor, abs=1e-3)
         assert found.better_escape_radius == pytest.approx(found.exact.radius, rel=1e-6)
@@ -120,7 +127,7 @@ def test_estimates_of_the_thesis_miss_the_radius_by_a_constant_factor():
 
 def test_slow_spiral_follows_the_thesis_for_a_while():
     """C4: a = 1e-3, t = 300. (2.20) misses r by 1.3e-3, its linear form by a fifth, (2.23) by 1.4e-3."""
-    found, flown = st.circumferential(1e-3), st.trajectory("circumferential", 1e-3, [300.0])
+    found, flown = special_thrust.circumferential(1e-3), special_thrust.trajectory("circumferential", 1e-3, [300.0])
     assert flown.radius[0] == pytest.approx(2.038163960, abs=0.51e-9)
     assert flown.angle[0] == pytest.approx(189.989891235, abs=0.51e-9)
     assert found.radius_at_time(300) == pytest.approx(2.040816327, abs=0.51e-9)
@@ -131,9 +138,9 @@ def test_slow_spiral_follows_the_thesis_for_a_while():
 
 
 def test_estimates_that_make_no_sense_are_refused():
-    assert "0.5" in st.circumferential(0.6).reason
-    assert "0.2236" in st.tangential(0.3).reason
-    many = st.tangential(np.array([-1.0, 0.01, 0.3]))
+    assert "0.5" in special_thrust.circumferential(0.6).reason
+    assert "0.2236" in special_thrust.tangential(0.3).reason
+    many = special_thrust.tangential(np.array([-1.0, 0.01, 0.3]))
     assert many.feasible.tolist() == [False, True, False]
     assert (np.isnan(many.escape_radius) == ~many.feasible).all()
     assert np.isfinite(many.exact.radius).tolist() == [False, True, True]  # the motion itself is not refused
@@ -150,13 +157,13 @@ def test_trajectory_agrees_with_an_independent_integrator(kind):
         return [u, v / r, v * v / r - 1 / r**2 + push[0], -u * v / r + push[1]]
 
     run = solve_ivp(rates, (0, 40), [1, 0, 0, 1], t_eval=times, method="DOP853", rtol=1e-13, atol=1e-14)
-    flown = st.trajectory(kind, a, times)
+    flown = special_thrust.trajectory(kind, a, times)
     found = np.array([flown.radius, flown.angle, flown.radial_speed, flown.transverse_speed])
     assert found == pytest.approx(run.y, abs=1e-10)
 
 
 def test_trajectory_may_end_at_escape():
     times = np.linspace(0, 100, 101)
-    flown = st.trajectory("circumferential", 1e-2, times, to_escape=True)
+    flown = special_thrust.trajectory("circumferential", 1e-2, times, to_escape=True)
     assert np.isfinite(flown.radius[:77]).all()
     assert np.isnan(flown.radius[77:]).all()

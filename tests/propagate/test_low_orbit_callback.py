@@ -19,7 +19,7 @@ from sailviz.constants import (
     VACUUM_PERMITTIVITY,
     YEAR,
 )
-from sailviz.design.decay import quasi_circular as decay
+from sailviz.design import decay
 from sailviz.environment.eclipse import circular_fraction
 from sailviz.errors import SceneError
 

@@ -7,7 +7,7 @@ import pytest
 
 import sailviz
 from sailviz.constants import DAY, RADIUS_EARTH
-from sailviz.design.decay import quasi_circular as decay
+from sailviz.design import decay
 from sailviz.errors import SceneError
 
 FORCE = {"kind": "exponential-force", "force_per_length_nN_m": 292.2708, "scale_height_km": 488.25}

@@ -7,7 +7,7 @@ import pytest
 
 from sailviz import frames
 from sailviz.propagate import dynamics
-from sailviz.steering import attitude as law
+from sailviz.steering import attitude
 
 RNG = np.random.default_rng(11)
 STATES = np.concatenate([RNG.normal(size=(6, 40)), np.ones((1, 40))])
@@ -23,19 +23,19 @@ def normals(steering, parameters=(), times=None, states=STATES, **more):
 
 
 def test_sun_facing_is_along_the_position():
-    assert normals(law.RADIAL) == pytest.approx(frames.unit(POSITION), abs=1e-15)
+    assert normals(attitude.RADIAL) == pytest.approx(frames.unit(POSITION), abs=1e-15)
 
 
 @pytest.mark.parametrize(("clock", "axis", "sign"), [(0, 2, 1), (90, 1, 1), (180, 2, -1), (270, 1, -1)])
 def test_orbital_clock_runs_from_the_orbit_normal_towards_the_motion(clock, axis, sign):
     """0 deg along h_hat, 90 along t_hat, 180 against h_hat, 270 against t_hat."""
-    found = normals(law.ORBITAL, law.direction_parameters(np.pi / 2, np.radians(clock)))
+    found = normals(attitude.ORBITAL, attitude.direction_parameters(np.pi / 2, np.radians(clock)))
     assert found == pytest.approx(sign * frames.rtn(POSITION, VELOCITY)[:, :, axis], abs=1e-13)
 
 
 @pytest.mark.parametrize(("pitch", "clock"), [(0.3, 0.7), (1.2, 4.0), (2.0, 2.5)])
 def test_orbital_law_keeps_pitch_and_clock_everywhere(pitch, clock):
-    found = normals(law.ORBITAL, law.direction_parameters(pitch, clock))
+    found = normals(attitude.ORBITAL, attitude.direction_parameters(pitch, clock))
     angles = frames.pitch_cone_clock(frames.rtn(POSITION, VELOCITY), found, found)
     assert np.allclose(np.transpose(angles), [pitch, pitch, clock], atol=1e-12)
 
@@ -46,25 +46,25 @@ def test_meridian_law_leans_towards_the_pole_in_the_meridian_plane():
     east = frames.unit(np.cross([0, 0, 1.0], r_hat))
     north = np.cross(r_hat, east)
     assert (north[:, 2] > 0).all()
-    up = normals(law.MERIDIAN, law.direction_parameters(0.4, 0.0))
+    up = normals(attitude.MERIDIAN, attitude.direction_parameters(0.4, 0.0))
     assert up == pytest.approx(np.cos(0.4) * r_hat + np.sin(0.4) * north, abs=1e-13)
-    across = normals(law.MERIDIAN, law.direction_parameters(0.4, np.pi / 2))
+    across = normals(attitude.MERIDIAN, attitude.direction_parameters(0.4, np.pi / 2))
     assert across == pytest.approx(np.cos(0.4) * r_hat + np.sin(0.4) * east, abs=1e-13)
 
 
 def test_circumferential_and_tangential_thrust_point_along_the_motion():
-    across = normals(law.TRANSVERSE)
+    across = normals(attitude.TRANSVERSE)
     assert across == pytest.approx(frames.rtn(POSITION, VELOCITY)[:, :, 1], abs=1e-13)
-    assert normals(law.TANGENTIAL) == pytest.approx(frames.unit(VELOCITY), abs=1e-15)
+    assert normals(attitude.TANGENTIAL) == pytest.approx(frames.unit(VELOCITY), abs=1e-15)
 
 
 def test_inertial_direction_is_fixed_in_space():
-    assert normals(law.INERTIAL, (0.6, 0.0, 0.8)) == pytest.approx(np.tile([0.6, 0, 0.8], (40, 1)), abs=0)
+    assert normals(attitude.INERTIAL, (0.6, 0.0, 0.8)) == pytest.approx(np.tile([0.6, 0, 0.8], (40, 1)), abs=0)
 
 
 def test_every_law_gives_unit_vectors():
-    for steering in (law.ORBITAL, law.MERIDIAN):
-        found = normals(steering, law.direction_parameters(1.1, 2.2))
+    for steering in (attitude.ORBITAL, attitude.MERIDIAN):
+        found = normals(steering, attitude.direction_parameters(1.1, 2.2))
         assert np.linalg.norm(found, axis=1) == pytest.approx(np.ones(40), abs=1e-13)
 
 
@@ -72,12 +72,12 @@ def test_every_law_gives_unit_vectors():
 TIMES, PITCH, CLOCK = np.array([0.0, 2.0, 3.0, 7.0]), np.array([0.4, 0.5, 0.55, 0.9]), np.array([1.0, 1.5, 1.6, 2.5])
 
 
-def read_table(times, interpolation, frame=law.TABLE_ORBITAL, throttle=None):
+def read_table(times, interpolation, frame=attitude.TABLE_ORBITAL, throttle=None):
     """Pitch and clock (2, n) of the normal at times."""
     n = len(times)
     states = np.tile(np.array([1.0, 0.2, 0.3, -0.1, 0.9, 0.4, 1.0])[:, None], (1, n))
-    rows = law.table(TIMES, PITCH, CLOCK, throttle, interpolation)
-    found = normals(frame, times=times, states=states, table=rows, interpolation=law.INTERPOLATIONS[interpolation])
+    rows = attitude.table(TIMES, PITCH, CLOCK, throttle, interpolation)
+    found = normals(frame, times=times, states=states, table=rows, interpolation=attitude.INTERPOLATIONS[interpolation])
     pitch, _, clock = frames.pitch_cone_clock(frames.rtn(states[:3].T, states[3:6].T), found, found)
     return np.array([pitch, clock])
 
@@ -102,16 +102,16 @@ def test_cubic_table_reproduces_a_cubic():
 
 
 def test_a_table_in_the_meridian_frame_is_read_in_that_frame():
-    rows = law.table([0, 1], [0.4, 0.4], [0.0, 0.0])
-    found = normals(law.TABLE_MERIDIAN, table=rows, interpolation=law.LINEAR)
-    assert found == pytest.approx(normals(law.MERIDIAN, law.direction_parameters(0.4, 0.0)), abs=1e-15)
+    rows = attitude.table([0, 1], [0.4, 0.4], [0.0, 0.0])
+    found = normals(attitude.TABLE_MERIDIAN, table=rows, interpolation=attitude.LINEAR)
+    assert found == pytest.approx(normals(attitude.MERIDIAN, attitude.direction_parameters(0.4, 0.0)), abs=1e-15)
 
 
 def test_throttle_scales_the_thrust():
     """Half thrust at half time of a table from nothing to full."""
-    rows = law.table([0, 10], [0.4, 0.4], [1.0, 1.0], [0.0, 1.0])
+    rows = attitude.table([0, 10], [0.4, 0.4], [1.0, 1.0], [0.0, 1.0])
     model = dynamics.model(
-        1.0, device=dynamics.THRUSTER, device_parameters=(0.2, 0, 0), steering=law.TABLE_ORBITAL, table=rows
+        1.0, device=dynamics.THRUSTER, device_parameters=(0.2, 0, 0), steering=attitude.TABLE_ORBITAL, table=rows
     )
     times = np.array([0.0, 5.0, 10.0, 20.0])
     _, acceleration, _ = dynamics.observe(times, np.ascontiguousarray(STATES[:, :4]), np.ones(4), model)

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sailviz.environment.solar_wind import pressure as solar_wind
-from sailviz.propulsion import electric_sail
-from sailviz.propulsion import voltage_control as law
+from sailviz.environment.solar_wind.pressure import wind_potential
+from sailviz.propulsion import electric_sail, voltage_control
 from sailviz.uncertainty import control, wind
 
 K, THETA = 2.593, 0.7793e-9
@@ -38,8 +37,8 @@ def test_saturation_has_its_closed_form_numbers():
 def test_saturation_is_that_of_the_compiled_law():
     p = wind.generate("gamma", np.arange(1_000_000.0), 5, shape=K, scale=THETA)
     for most in (30e3, 40e3):
-        c = law.row("pressure", maximum_voltage=most, reference_pressure=K * THETA, interval=1.0)
-        volts, factors = law.histories(1.0, p, np.full_like(p, 5e6), np.full_like(p, 1e3), c)
+        c = voltage_control.row("pressure", maximum_voltage=most, reference_pressure=K * THETA, interval=1.0)
+        volts, factors = voltage_control.histories(1.0, p, np.full_like(p, 5e6), np.full_like(p, 1e3), c)
         found = control.saturation(K, THETA, 20e3, most, 1e3, K * THETA)
         n = np.sqrt(len(p))
         assert np.mean(volts == most) == pytest.approx(found.probability, abs=3 * 0.4 / n)
@@ -81,16 +80,16 @@ def flown(omni, c, potential=None):
     """Voltages and thrust factors over the measured hours."""
     known = omni.measured
     vw = np.full(known.sum(), 1e3) if potential is None else potential[known]
-    return law.histories(HOUR, omni.pressure[known], omni.density[known], vw, c)
+    return voltage_control.histories(HOUR, omni.pressure[known], omni.density[known], vw, c)
 
 
 def test_measured_wind_at_constant_voltage(omni):
-    c = law.row(reference_pressure=omni.reference_pressure())
+    c = voltage_control.row(reference_pressure=omni.reference_pressure())
     _, eta = flown(omni, c)
     assert (eta.mean(), eta.std() / eta.mean()) == pytest.approx((0.9475, 0.3373), abs=1e-4)
-    _, eta = flown(omni, c, solar_wind.wind_potential(omni.speed))
+    _, eta = flown(omni, c, wind_potential(omni.speed))
     assert (eta.mean(), eta.std() / eta.mean()) == pytest.approx((0.9436, 0.3291), abs=3e-4)
-    unbiased = law.row(reference_pressure=omni.reference_pressure(unbiased=True))
+    unbiased = voltage_control.row(reference_pressure=omni.reference_pressure(unbiased=True))
     assert flown(omni, unbiased)[1].mean() == pytest.approx(1, abs=1e-12)
 
 
@@ -99,7 +98,9 @@ def test_measured_wind_at_constant_voltage(omni):
 )
 def test_measured_wind_at_constant_power(omni, most, mean, cv, volts):
     p_ref = omni.reference_pressure()
-    c = law.row("constant-power", power=NOMINAL_POWER, maximum_voltage=most, interval=HOUR, reference_pressure=p_ref)
+    c = voltage_control.row(
+        "constant-power", power=NOMINAL_POWER, maximum_voltage=most, interval=HOUR, reference_pressure=p_ref
+    )
     found, eta = flown(omni, c)
     assert (eta.mean(), eta.std() / eta.mean()) == pytest.approx((mean, cv), abs=1e-4)
     assert found.mean() / 1e3 == pytest.approx(volts, abs=0.006)
@@ -116,8 +117,8 @@ def test_measured_wind_at_constant_power(omni, most, mean, cv, volts):
 )
 def test_pressure_law_under_a_power_limit_in_the_measured_wind(omni, times, mean, deviation, limited):
     common = {"reference_pressure": omni.reference_pressure(), "interval": HOUR}
-    volts, eta = flown(omni, law.row("pressure", power=times * NOMINAL_POWER, **common))
-    free, _ = flown(omni, law.row("pressure", **common))
+    volts, eta = flown(omni, voltage_control.row("pressure", power=times * NOMINAL_POWER, **common))
+    free, _ = flown(omni, voltage_control.row("pressure", **common))
     assert (eta.mean(), eta.std()) == pytest.approx((mean, deviation), abs=1e-4)
     assert np.mean(volts < free) == pytest.approx(limited, abs=6e-4)
     ratio = omni.density[omni.measured] * free**1.5 / NOMINAL_POWER
@@ -129,9 +130,9 @@ def test_pressure_law_under_a_power_limit_in_the_measured_wind(omni, times, mean
 @pytest.mark.parametrize(("hours", "surplus"), [(6, (0.005, 0.008)), (24, (0.036, 0.039))])
 def test_holding_the_voltage_as_long_as_the_wind_remembers_pushes_too_much(omni, hours, surplus):
     # Held over d, the factor has the mean E sqrt(p(t + d) / p(t)) > 1
-    c = law.row("pressure", reference_pressure=omni.reference_pressure(), interval=hours * HOUR)
+    c = voltage_control.row("pressure", reference_pressure=omni.reference_pressure(), interval=hours * HOUR)
     n = len(omni.pressure)
-    _, eta = law.histories(HOUR, omni.pressure, np.full(n, 5e6), np.full(n, 1e3), c)
-    prompt = law.row("pressure", reference_pressure=omni.reference_pressure(), interval=HOUR)
-    _, at_once = law.histories(HOUR, omni.pressure, np.full(n, 5e6), np.full(n, 1e3), prompt)
+    _, eta = voltage_control.histories(HOUR, omni.pressure, np.full(n, 5e6), np.full(n, 1e3), c)
+    prompt = voltage_control.row("pressure", reference_pressure=omni.reference_pressure(), interval=HOUR)
+    _, at_once = voltage_control.histories(HOUR, omni.pressure, np.full(n, 5e6), np.full(n, 1e3), prompt)
     assert surplus[0] - 0.003 < eta.mean() - at_once.mean() < surplus[1] + 0.003

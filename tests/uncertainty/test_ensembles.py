@@ -17,9 +17,9 @@ from sailviz.environment.solar_wind.laws import Gamma, Lognormal
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.ensemble.draws import normals
 from sailviz.propagate.events import watch
-from sailviz.propulsion import voltage_control as control
+from sailviz.propulsion import voltage_control
 from sailviz.propulsion.solar_sail import FILMS
-from sailviz.steering import attitude as steering
+from sailviz.steering import attitude
 from sailviz.uncertainty.covariance import linear
 from sailviz.uncertainty.ensembles import GivenWind, RandomWind, ReplayedWind, fly_ensemble, fly_factors
 
@@ -45,7 +45,7 @@ def transfers():
 def table(transfer):
     n = len(transfer.pitch)
     time = transfer.time * TU / n * np.arange(n)
-    return steering.table(time, transfer.pitch, np.full(n, np.pi / 2), transfer.throttle, "hold")
+    return attitude.table(time, transfer.pitch, np.full(n, np.pi / 2), transfer.throttle, "hold")
 
 
 @pytest.mark.parametrize(
@@ -65,7 +65,7 @@ def test_smoothed_transfer_takes_the_tabled_time_and_angle(transfers, planet, da
 def test_table_of_the_transfer_flies_to_the_planet_s_orbit(transfers):
     for planet, radius in (("mars", 1.523679), ("venus", 0.723332)):
         transfer = transfers[planet]
-        row = control.row(reference_pressure=2e-9)
+        row = voltage_control.row(reference_pressure=2e-9)
         wind = GivenWind([[2e-9]], np.inf)
         end = fly_ensemble(*CIRCULAR, transfer.time * TU, wind=wind, control=row, flights=1, table=table(transfer)).end
         r, angle, _, u, v, _ = end[0]
@@ -103,20 +103,20 @@ SAIL = (dynamics.SOLAR_SAIL, (0.3e-3 * AU**2 / FILM.total, FILM.b1, FILM.b2, FIL
 )
 def test_flight_is_that_of_the_accurate_integrator(start, device, pitch, clock, frame):
     kind, parameters = device
-    law = steering.ORBITAL if frame == "orbital" else steering.MERIDIAN
+    law = attitude.ORBITAL if frame == "orbital" else attitude.MERIDIAN
     model = dynamics.model(
         MU_SUN,
         device=kind,
         device_parameters=parameters,
         steering=law,
-        steering_parameters=steering.direction_parameters(deg(pitch), deg(clock)),
+        steering_parameters=attitude.direction_parameters(deg(pitch), deg(clock)),
     )
     electric = kind == dynamics.ELECTRIC_SAIL
     ensemble = fly_ensemble(
         *start,
         730 * DAY,
         wind=GivenWind(FACTORS**2 if electric else FACTORS, DAY),
-        control=control.row(reference_pressure=1.0),
+        control=voltage_control.row(reference_pressure=1.0),
         flights=3,
         device="electric-sail" if electric else FILM,
         characteristic_acceleration=1e-3 if electric else 0.3e-3,
@@ -136,7 +136,7 @@ def test_flight_is_that_of_the_accurate_integrator(start, device, pitch, clock, 
 def test_unsaturated_pressure_law_returns_the_nominal_flight(transfers):
     mars = transfers["mars"]
     step = mars.time * TU / len(mars.pitch)
-    row = control.row("pressure", maximum_voltage=1e9, reference_pressure=2.0207e-9, interval=step)
+    row = voltage_control.row("pressure", maximum_voltage=1e9, reference_pressure=2.0207e-9, interval=step)
     wind = RandomWind(LAW, "correlated", step)
     found = fly_ensemble(*CIRCULAR, mars.time * TU, wind=wind, control=row, flights=64, table=table(mars), outputs=50)
     scale = np.array([AU, 1, AU, AU / TU, AU / TU, AU / TU])
@@ -148,7 +148,7 @@ def test_unsaturated_pressure_law_returns_the_nominal_flight(transfers):
 def test_threads_and_number_of_flights_change_no_flight():
     def fly(flights, threads):
         wind = RandomWind(LAW, "correlated", 5 * DAY, yearly_deviation=0.1)
-        row = control.row("pressure", maximum_voltage=22e3, interval=5 * DAY)
+        row = voltage_control.row("pressure", maximum_voltage=22e3, interval=5 * DAY)
         return fly_ensemble(
             *CIRCULAR, 400 * DAY, wind=wind, control=row, flights=flights, threads=threads, pitch=deg(30), outputs=9
         )
@@ -161,7 +161,7 @@ def test_threads_and_number_of_flights_change_no_flight():
 
 
 def test_statistics_over_time_are_those_of_the_flights():
-    wind, row = RandomWind(LAW, "correlated", DAY), control.row("pressure", maximum_voltage=25e3, interval=DAY)
+    wind, row = RandomWind(LAW, "correlated", DAY), voltage_control.row("pressure", maximum_voltage=25e3, interval=DAY)
     found = fly_ensemble(*CIRCULAR, 300 * DAY, wind=wind, control=row, flights=4000, pitch=deg(30), outputs=40)
     assert found.mean[-1] == pytest.approx(found.end.mean(axis=0), rel=1e-12)
     np.testing.assert_allclose(found.covariance[-1], np.cov(found.end.T), rtol=1e-9, atol=1e-9)
@@ -169,8 +169,8 @@ def test_statistics_over_time_are_those_of_the_flights():
     assert (error <= found.resolution[-1]).all()
     assert (found.resolution[-1] < 0.02 * found.standard_deviation[-1] + 1e-12).all()
     assert np.array_equal(found.nominal[0], found.mean[0])
-    bound = control.row("pressure", maximum_voltage=25e3)
-    threshold = bound[control.P_REF] / ((25e3 - 1e3) / (20e3 - 1e3)) ** 2
+    bound = voltage_control.row("pressure", maximum_voltage=25e3)
+    threshold = bound[voltage_control.P_REF] / ((25e3 - 1e3) / (20e3 - 1e3)) ** 2
     expected = stats.gamma(SHAPE, scale=SCALE).cdf(threshold)
     assert found.flight_saturated.mean() == pytest.approx(expected, abs=0.005)
     assert found.saturated[5:] == pytest.approx(expected, abs=4 * np.sqrt(expected / 4000))
@@ -180,7 +180,7 @@ def test_statistics_over_time_are_those_of_the_flights():
 
 
 def test_recorded_flights_agree_with_their_statistics():
-    wind, row = RandomWind(LAW, "redrawn", DAY), control.row()
+    wind, row = RandomWind(LAW, "redrawn", DAY), voltage_control.row()
     found = fly_ensemble(*CIRCULAR, 100 * DAY, wind=wind, control=row, flights=150, pitch=deg(30), outputs=12)
     assert np.array_equal(found.kept[:, -1], found.end)
     np.testing.assert_allclose(found.percentiles, np.percentile(found.kept, found.levels, axis=0))
@@ -201,7 +201,7 @@ def test_drawn_pressures_follow_their_law_and_forget_as_told():
     hours = 400
     wind = RandomWind(LAW, "correlated", 3600.0)
     found = fly_ensemble(
-        *CIRCULAR, hours * 3600.0, wind=wind, control=control.row(), flights=1000, keep=1000, outputs=hours + 1
+        *CIRCULAR, hours * 3600.0, wind=wind, control=voltage_control.row(), flights=1000, keep=1000, outputs=hours + 1
     )
     p = found.pressure.kept[:, :-1]
     law = stats.gamma(SHAPE, scale=SCALE)
@@ -213,7 +213,7 @@ def test_drawn_pressures_follow_their_law_and_forget_as_told():
 def test_yearly_factor_is_lognormal_and_new_every_year():
     wind = RandomWind(Lognormal(1e-6, 2e-9), "redrawn", 10 * DAY, yearly_deviation=0.175)
     found = fly_ensemble(
-        *CIRCULAR, 800 * DAY, wind=wind, control=control.row(), flights=1000, keep=1000, outputs=81
+        *CIRCULAR, 800 * DAY, wind=wind, control=voltage_control.row(), flights=1000, keep=1000, outputs=81
     ).pressure.kept[:, :-1]
     level = np.log(found / 2e-9)
     assert level.std(axis=0) == pytest.approx(0.175, rel=3 / np.sqrt(2 * 1000))
@@ -225,18 +225,18 @@ def test_replay_starts_anywhere_and_never_wraps():
     series = np.arange(1.0, 101.0) * 1e-9
     wind = ReplayedWind(series, DAY)
     found = fly_ensemble(
-        *CIRCULAR, 60 * DAY, wind=wind, control=control.row(), flights=1000, keep=1000, outputs=61
+        *CIRCULAR, 60 * DAY, wind=wind, control=voltage_control.row(), flights=1000, keep=1000, outputs=61
     ).pressure.kept[:, :-1]
     np.testing.assert_allclose(np.diff(found, axis=1), 1e-9)
     starts = np.rint(found[:, 0] / 1e-9).astype(int)
     assert (starts.min(), starts.max()) == (1, 41)
     with pytest.raises(ValueError, match="lasts 59 d, the flight 60 d"):
-        fly_ensemble(*CIRCULAR, 60 * DAY, wind=ReplayedWind(series[:59], DAY), control=control.row())
+        fly_ensemble(*CIRCULAR, 60 * DAY, wind=ReplayedWind(series[:59], DAY), control=voltage_control.row())
 
 
 @pytest.mark.parametrize(("gain", "final"), [(0.9, 0.02415), (1.1, 0.00068)])
 def test_heliostationary_point_is_held_if_and_only_if_the_gain_exceeds_one(gain, final):
-    row = control.row("distance", position_gain=gain, reference_pressure=2e-9, interval=600.0)
+    row = voltage_control.row("distance", position_gain=gain, reference_pressure=2e-9, interval=600.0)
     found = fly_ensemble(
         [1.001 * AU, 0, 0],
         [0, 0, 0],
@@ -288,7 +288,7 @@ def fly_row(transfer, kind, hours, law, reference, maximum, flights=1000):
     word, *numbers = law.split()
     interval = (float(numbers[0]) if word == "pressure" and numbers else 24 if word == "distance" else 1) * step
     gains = dict(zip(("position_gain", "speed_gain"), map(float, numbers), strict=False)) if word == "distance" else {}
-    row = control.row(
+    row = voltage_control.row(
         word, maximum_voltage=1e3 * maximum, reference_pressure=1e-9 * reference, interval=interval, **gains
     )
     wind = RandomWind(LAW, kind, hours * step) if hours else kind
@@ -386,7 +386,7 @@ def test_brighter_sun_moves_a_solar_sail_as_tabled():
         *CIRCULAR,
         700 * DAY,
         wind=GivenWind([[1.001 * solar]], np.inf),
-        control=control.row(reference_pressure=solar),
+        control=voltage_control.row(reference_pressure=solar),
         flights=1,
         device="ideal",
         characteristic_acceleration=0.5e-3,
@@ -417,7 +417,7 @@ def test_constant_pressure_spreads_as_by_quadrature(transfers):
 def test_given_factors_end_where_given_pressures_do():
     ends = fly_factors(FACTORS, DAY, *CIRCULAR, 730 * DAY, pitch=deg(20))
     wind = GivenWind(FACTORS**2 * 2e-9, DAY)
-    row = control.row(reference_pressure=2e-9)
+    row = voltage_control.row(reference_pressure=2e-9)
     other = fly_ensemble(*CIRCULAR, 730 * DAY, wind=wind, control=row, flights=3, pitch=deg(20)).end
     np.testing.assert_allclose(ends, other, rtol=1e-8)
 
@@ -435,16 +435,16 @@ def test_given_factors_end_where_given_pressures_do():
         ({"wind": RandomWind(LAW, "gusty")}, "constant, redrawn, correlated"),
         ({"wind": GivenWind([[1e-9], [2e-9]], DAY)}, "2 histories were given for 10 flights"),
         ({"wind": GivenWind([[-1e-9]], DAY)}, "not negative"),
-        ({"control": control.row("constant-power", power=1e9)}, "density"),
+        ({"control": voltage_control.row("constant-power", power=1e9)}, "density"),
     ],
 )
 def test_what_cannot_be_flown_is_refused_with_the_reason(change, words):
-    options = {"wind": RandomWind(LAW), "control": control.row(), "flights": 10, "duration": 10 * DAY} | change
+    options = {"wind": RandomWind(LAW), "control": voltage_control.row(), "flights": 10, "duration": 10 * DAY} | change
     with pytest.raises(ValueError, match=words):
         fly_ensemble(*CIRCULAR, options.pop("duration"), **options)
 
 
 def test_unbiased_reference_leaves_the_mean_thrust_nominal():
-    row = control.row(reference_pressure=LAW.reference_pressure(unbiased=True))
+    row = voltage_control.row(reference_pressure=LAW.reference_pressure(unbiased=True))
     found = fly_ensemble(*CIRCULAR, 700 * DAY, wind=RandomWind(LAW), control=row, flights=2000, outputs=3)
     assert found.flight_factor.mean() == pytest.approx(1, abs=4 * 0.317 / np.sqrt(700 * 2000))

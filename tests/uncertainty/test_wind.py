@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sailviz.environment.solar_wind import pressure as solar_wind
+from sailviz.environment.solar_wind.pressure import wind_potential
 from sailviz.uncertainty import wind
 
 HOUR = 3600.0
@@ -35,7 +35,7 @@ def test_measured_wind_has_its_moments_fits_and_gaps(omni):
         assert found.ks == pytest.approx(ks, abs=6e-5)
         assert found.aic == pytest.approx(aic, abs=0.6)
     assert omni.reference_pressure(unbiased=True) / nPa == pytest.approx(1.814, abs=6e-4)
-    volts = solar_wind.wind_potential(omni.speed)
+    volts = wind_potential(omni.speed)
     # 1034 and 527 V without the speeds filled here, many of which were lost in the storms of 2003
     assert volts.mean() == pytest.approx(1034, rel=0.012)
     assert volts.std() == pytest.approx(527, rel=0.012)

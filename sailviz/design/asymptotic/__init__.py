@@ -5,6 +5,9 @@ from typing import TYPE_CHECKING
 from sailviz.lazy import lazily
 
 if TYPE_CHECKING:
+    from sailviz.design.asymptotic.solution import CLOCKS as CLOCKS
+    from sailviz.design.asymptotic.solution import DOUBTFUL as DOUBTFUL
+    from sailviz.design.asymptotic.solution import SCHEMES as SCHEMES
     from sailviz.design.asymptotic.solution import BreakdownError as BreakdownError
     from sailviz.design.asymptotic.solution import Solution as Solution
     from sailviz.design.asymptotic.solution import constant_thrust as constant_thrust
@@ -17,6 +20,9 @@ if TYPE_CHECKING:
 
 _HOMES = {
     "BreakdownError": "solution",
+    "CLOCKS": "solution",
+    "DOUBTFUL": "solution",
+    "SCHEMES": "solution",
     "Solution": "solution",
     "propagate": "solution",
     "from_elements": "solution",

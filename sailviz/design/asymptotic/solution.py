@@ -15,13 +15,27 @@ from functools import cached_property
 import numpy as np
 
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
-from sailviz.design.asymptotic import legs as legs_of
+from sailviz.design.asymptotic.legs import (
+    ASYMPTOTE,
+    CLOSED,
+    HYPERBOLIC,
+    MIDPOINT,
+    NO_MASS,
+    NO_MOMENTUM,
+    NONE,
+    OK,
+    PLAIN,
+    QUADRATURE,
+    TOO_MANY_LEGS,
+    march,
+    march_adaptive,
+)
 from sailviz.design.displaced.force_shape import force_shape
 
 DOUBTFUL = 0.03  # relative error in r from which a result says that it should not be trusted
 ADAPTIVE_CAP = np.pi / 2  # rad; with legs near a revolution the step-doubling estimate aliases and under-reports
-SCHEMES = {"plain": legs_of.PLAIN, "midpoint": legs_of.MIDPOINT}
-CLOCKS = {"quadrature": legs_of.QUADRATURE, "closed": legs_of.CLOSED, None: legs_of.NONE}
+SCHEMES = {"plain": PLAIN, "midpoint": MIDPOINT}
+CLOCKS = {"quadrature": QUADRATURE, "closed": CLOSED, None: NONE}
 
 
 class BreakdownError(ValueError):
@@ -163,16 +177,16 @@ def propagate(
 
     def make(angles, refined, clock=None):
         arc = max(np.max(np.abs(angles - theta0), initial=0.0), 1e-300)
-        way = legs_of.MIDPOINT if refined else SCHEMES[scheme]
+        way = MIDPOINT if refined else SCHEMES[scheme]
         part = 0.5 if refined else 1.0
         length = (arc if leg is None else leg) if not adaptive else cap
 
         def run(side, out, time, mass):
             if adaptive:
-                return legs_of.march_adaptive(
+                return march_adaptive(
                     q, theta0, side, tolerance * part, length * part, *law, CLOCKS[clock], way, out, time
                 )[:3]
-            return legs_of.march(q, theta0, side, length * part, *law, CLOCKS[clock], way, 0.0, out, time, mass)
+            return march(q, theta0, side, length * part, *law, CLOCKS[clock], way, 0.0, out, time, mass)
 
         return _both_ways(run, theta0, angles)
 
@@ -189,13 +203,13 @@ def constant_thrust(q, theta0, theta, radial, transverse, exhaust_speed, leg=np.
     """
     loss = float(np.hypot(radial, transverse) / exhaust_speed)
     q = np.ascontiguousarray(q, dtype=float)
-    law = (0, float(radial), float(transverse), legs_of.QUADRATURE)
+    law = (0, float(radial), float(transverse), QUADRATURE)
 
     def make(angles, refined):
-        way, part = (legs_of.MIDPOINT, 0.5) if refined else (SCHEMES[scheme], 1.0)
+        way, part = (MIDPOINT, 0.5) if refined else (SCHEMES[scheme], 1.0)
 
         def run(side, out, time, mass):
-            return legs_of.march(q, theta0, side, float(leg) * part, *law, way, loss, out, time, mass)
+            return march(q, theta0, side, float(leg) * part, *law, way, loss, out, time, mass)
 
         return _both_ways(run, theta0, angles)
 
@@ -295,7 +309,7 @@ def _both_ways(run, theta0, angles) -> dict:
             continue
         out, t, m = np.empty((len(index), 3)), np.empty(len(index)), np.ones(len(index))
         status, place, count = run(np.ascontiguousarray(angles[index]), out, t, m)
-        if status != legs_of.OK:
+        if status != OK:
             raise BreakdownError(_words(status, place, theta0), float(place))
         q[index], time[index], mass[index] = out, t, m
         legs += int(count)
@@ -305,10 +319,10 @@ def _both_ways(run, theta0, angles) -> dict:
 def _words(status, theta, theta0):
     where = f"theta = {theta:.6g} rad, {(theta - theta0) / (2 * np.pi):.4g} rev from the start"
     what = {
-        legs_of.NO_MOMENTUM: "q3 reaches zero, the angular momentum has no bound",
-        legs_of.ASYMPTOTE: "s reaches zero, the radius has no bound",
-        legs_of.HYPERBOLIC: "the orbit to be frozen is no ellipse",
-        legs_of.NO_MASS: "the mass runs out",
-        legs_of.TOO_MANY_LEGS: "the tolerance asks for more legs than there is patience",
+        NO_MOMENTUM: "q3 reaches zero, the angular momentum has no bound",
+        ASYMPTOTE: "s reaches zero, the radius has no bound",
+        HYPERBOLIC: "the orbit to be frozen is no ellipse",
+        NO_MASS: "the mass runs out",
+        TOO_MANY_LEGS: "the tolerance asks for more legs than there is patience",
     }[status]
     return f"the first-order solution ends at {where}: {what}; shorter arcs, or legs, may reach further"

@@ -11,54 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from sailviz.constants import MU_EARTH, RADIUS_EARTH, YEAR
-from sailviz.design.decay.orbit import BRAKE_FLOOR, corotation_factor, craft_of, mean_radius_offset, setting
-from sailviz.design.decay.profiles import (
-    BAND,
-    INCLINATIONS,
-    LEVELS,
-    REFERENCE,
-    Fit,
-    ForceProfile,
-    Plasma,
-    averaged_profile,
-    constant,
-    exponential,
-    fit,
-    log_quadratic,
-    power_law,
-    shipped_profile,
-    tabulated,
-)
-
-__all__ = [
-    "BAND",
-    "BRAKE_FLOOR",
-    "INCLINATIONS",
-    "LEVELS",
-    "REENTRY",
-    "Band",
-    "Compliance",
-    "Descent",
-    "Fit",
-    "ForceProfile",
-    "Plasma",
-    "altitude_history",
-    "averaged_profile",
-    "compliance",
-    "constant",
-    "corotation_factor",
-    "decay_band",
-    "decay_time",
-    "descend",
-    "exponential",
-    "exponential_decay_time",
-    "fit",
-    "log_quadratic",
-    "mean_radius_offset",
-    "power_law",
-    "shipped_profile",
-    "tabulated",
-]
+from sailviz.design.decay.orbit import BRAKE_FLOOR, craft_of, setting
+from sailviz.design.decay.profiles import BAND, REFERENCE
 
 REENTRY = 120e3  # m, where a re-entry begins
 FINE = 2e3  # m, spacing of the altitudes of a Descent

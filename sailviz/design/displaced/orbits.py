@@ -1,6 +1,6 @@
 """Displaced non-Keplerian orbits: the sail that holds an orbit whose plane does not contain the Sun.
 
-Circles here; ellipses and prescribed tracks in displaced_tracks, stability in displaced_stability, all under this name.
+Circles here; ellipses and prescribed tracks in `tracks`, stability in `linear_stability`.
 Source: thesis, section 4.2, (4.2)-(4.7), read in excerpt; optical films, feasibility bounds and all after (4.7)
 re-derived.
 """
@@ -13,34 +13,7 @@ import numpy as np
 
 from sailviz.constants import AU, MU_SUN
 from sailviz.design.displaced.force_shape import force_shape
-from sailviz.design.displaced.holding import Holding, Track, attitude
-from sailviz.design.displaced.linear_stability import (
-    Stability,
-    largest_stable_elevation,
-    smallest_stable_rate,
-    stability,
-)
-from sailviz.design.displaced.tracks import flat_ellipse, planet_following, sampled_track, track
-
-__all__ = [
-    "Holding",
-    "Stability",
-    "Track",
-    "circular",
-    "ecliptic",
-    "flat_ellipse",
-    "heliostationary",
-    "lagrange_point",
-    "largest_rate_ratio",
-    "largest_stable_elevation",
-    "planet_following",
-    "sampled_track",
-    "smallest_stable_rate",
-    "stability",
-    "state",
-    "track",
-    "type_ii",
-]
+from sailviz.design.displaced.holding import Holding, attitude
 
 
 def circular(radius, elevation, rate_ratio, device="electric-sail") -> Holding:

@@ -11,8 +11,8 @@ import pytest
 from scipy.integrate import quad, solve_ivp
 
 from sailviz.constants import AU, MU_SUN
+from sailviz.design import asymptotic
 from sailviz.design.asymptotic import integrals
-from sailviz.design.asymptotic import solution as asymptotic
 
 TURN = 2 * np.pi
 CASES = {case["id"]: case for case in json.loads(Path(__file__).with_name("reference_asymptotic.json").read_text())}
@@ -444,7 +444,7 @@ def test_thrust_of_devices_is_that_of_the_reference():
 def test_analytic_flight_is_the_propagated_one(fly):
     """The E-sail of A26, propagated in three dimensions, against midpoint legs of 11 deg: position within 4e-5 au."""
     from sailviz.propagate import dynamics
-    from sailviz.steering import attitude as law
+    from sailviz.steering import attitude
 
     pitch, ac = np.radians(45), 1e-4
     er, et, n = asymptotic.thrust("electric-sail", ac, pitch)
@@ -455,8 +455,8 @@ def test_analytic_flight_is_the_propagated_one(fly):
         MU_SUN,
         device=dynamics.ELECTRIC_SAIL,
         device_parameters=(ac, 0, np.pi / 2),
-        steering=law.ORBITAL,
-        steering_parameters=law.direction_parameters(pitch, np.pi / 2),
+        steering=attitude.ORBITAL,
+        steering_parameters=attitude.direction_parameters(pitch, np.pi / 2),
     )
     speed = np.sqrt(MU_SUN / AU * 1.2 / 0.8)
     run = fly(model, (0.8 * AU, 0, 0), (0, speed, 0), found.time * np.sqrt(AU**3 / MU_SUN))

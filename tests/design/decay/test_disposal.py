@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from sailviz.constants import DAY, RADIUS_EARTH, STANDARD_GRAVITY
+from sailviz.design import decay
 from sailviz.design.decay import disposal
-from sailviz.design.decay import quasi_circular as decay
 
 # h km: circular speed; burn to a perigee of 0, 60, 120 km; spiral to 120, 300, 500 km; m/s
 VELOCITIES = {

@@ -8,8 +8,8 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 from sailviz.constants import DAY, MU_EARTH, RADIUS_EARTH, YEAR
-from sailviz.design.decay import neutral_drag as decay_drag
-from sailviz.design.decay import quasi_circular as decay
+from sailviz.design import decay
+from sailviz.design.decay import neutral_drag
 from sailviz.environment import atmosphere
 
 POLAR, STATION = np.radians(97.8), np.radians(51.6)
@@ -238,24 +238,24 @@ def test_air_takes_over_from_the_brake_where_tabled(mass, length, drag_area, sta
     """To a kilometre; the forces are equal there and the brake leads above."""
     for level, (_, _, km) in zip(decay.LEVELS, rows, strict=True):
         profile, air = decay.shipped_profile(level), own_air(level)
-        found = decay_drag.crossover_altitude(length, profile, drag_area, air)
+        found = neutral_drag.crossover_altitude(length, profile, drag_area, air)
         assert found / 1e3 == pytest.approx(km, abs=1)
         way = decay.descend(mass, length, found + 4e3, found - 4e3, profile, drag_area=drag_area, air=air)
         assert way.brake[0] > way.drag[0]
         assert way.brake[-1] < way.drag[-1]
         assert np.interp(-found, -way.altitude, way.brake / way.drag) == pytest.approx(1, abs=2e-3)
-    assert np.isnan(decay_drag.crossover_altitude(1e6, profile, 1e-6, air))
+    assert np.isnan(neutral_drag.crossover_altitude(1e6, profile, 1e-6, air))
 
 
 def test_steady_sun_by_integration_is_the_quadrature():
     air = atmosphere.mean_profile(70.0, 5.0, POLAR)
     alone = decay.decay_time(4.5, 0.0, 700e3, decay.REENTRY, None, drag_area=0.066, air=air)
-    assert decay_drag.cycle_descent(4.5, 700e3, 2020, drag_area=0.066, f107=70.0).duration == pytest.approx(
+    assert neutral_drag.cycle_descent(4.5, 700e3, 2020, drag_area=0.066, f107=70.0).duration == pytest.approx(
         alone, rel=5e-5
     )
     profile = decay.averaged_profile(POLAR, 70.0)
     both = decay.decay_time(100.0, 5e3, 800e3, decay.REENTRY, profile, drag_area=2.2, air=air)
-    way = decay_drag.cycle_descent(100.0, 800e3, 2020, drag_area=2.2, length=5e3, f107=70.0)
+    way = neutral_drag.cycle_descent(100.0, 800e3, 2020, drag_area=2.2, length=5e3, f107=70.0)
     assert way.duration == pytest.approx(both, rel=5e-5)
     assert np.all((way.brake > 0) == (way.altitude >= 200e3))
 
@@ -269,16 +269,16 @@ def test_decades_of_drag_see_the_cycles_mean_air():
     mean = np.mean(np.exp([[np.interp(f, atmosphere.LEVELS, column) for column in log.T] for f in flux]), axis=0)
     steady = decay.decay_time(4.5, 0.0, 700e3, decay.REENTRY, None, drag_area=0.066, air=(known[0][1], mean))
     for year in (2020.0, 2025.5):
-        way = decay_drag.cycle_descent(4.5, 700e3, year, drag_area=0.066)
+        way = neutral_drag.cycle_descent(4.5, 700e3, year, drag_area=0.066)
         assert abs(way.duration - steady) < 5.5 * YEAR
         assert way.duration > 5 * 11 * YEAR
 
 
 def test_short_descent_ends_sooner_when_it_starts_into_a_maximum():
-    rising, falling = (decay_drag.cycle_descent(4.5, 500e3, year, drag_area=0.066).duration for year in (2023, 2028))
+    rising, falling = (neutral_drag.cycle_descent(4.5, 500e3, year, drag_area=0.066).duration for year in (2023, 2028))
     assert rising < falling / 2
     with pytest.raises(ValueError, match="70 to 200"):
-        decay_drag.cycle_descent(4.5, 500e3, 2023, drag_area=0.066, f107=300)
+        neutral_drag.cycle_descent(4.5, 500e3, 2023, drag_area=0.066, f107=300)
 
 
 def test_order_of_the_drag_path_by_a_flown_sail():

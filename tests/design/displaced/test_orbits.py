@@ -7,11 +7,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_EARTH, MU_SUN
-from sailviz.design.displaced import orbits as displaced
+from sailviz.design import displaced
 from sailviz.propagate import dynamics
 from sailviz.propulsion import electric_sail
 from sailviz.propulsion.solar_sail import FILMS, Film
-from sailviz.steering import attitude as law
+from sailviz.steering import attitude
 
 deg = np.radians
 PHI_MAX = np.arcsin(1 / 3)
@@ -464,8 +464,8 @@ def flight(fly, psi, wb, clock, shift, periods, outputs=2001):
         MU_SUN,
         device=dynamics.ELECTRIC_SAIL,
         device_parameters=(float(design.characteristic_acceleration), 0, np.pi / 2),
-        steering=law.ORBITAL if clock == "orbital" else law.MERIDIAN,
-        steering_parameters=law.direction_parameters(float(design.pitch), 0.0),
+        steering=attitude.ORBITAL if clock == "orbital" else attitude.MERIDIAN,
+        steering_parameters=attitude.direction_parameters(float(design.pitch), 0.0),
     )
     rate = np.sqrt(MU_SUN / AU**3)
     times = np.linspace(0, periods * 2 * np.pi / (wb * rate), outputs)

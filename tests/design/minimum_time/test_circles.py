@@ -12,8 +12,7 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
 
 from sailviz.constants import AU, DAY, MU_SUN
-from sailviz.design.minimum_time import circle_to_circle, planar_orbit_to_orbit, sail_from
-from sailviz.design.minimum_time import circles as minimum_time
+from sailviz.design.minimum_time import circle_to_circle, circles, planar_orbit_to_orbit, sail_from
 from sailviz.design.minimum_time.boundary_conditions import ToCircle
 from sailviz.design.minimum_time.search import distinct, finish, follow, search
 from sailviz.propulsion import solar_sail
@@ -182,9 +181,9 @@ def test_targets_out_of_reach_are_named_with_the_nearest_circle_reached(monkeypa
         found = search(flight, *rest, **more)
         return replace(found, extremals=()) if flight.radius == MARS else found
 
-    monkeypatch.setattr(minimum_time, "DIRECTIONS", (128, 128))
-    monkeypatch.setattr(minimum_time, "search", blind)
-    monkeypatch.setattr(minimum_time, "follow", partial(follow, steps=3))
+    monkeypatch.setattr(circles, "DIRECTIONS", (128, 128))
+    monkeypatch.setattr(circles, "search", blind)
+    monkeypatch.setattr(circles, "follow", partial(follow, steps=3))
     found = circle_to_circle(AU, MARS * AU, "ideal", 2e-3)
     assert (found.feasible, found.solutions) == (False, 0)
     assert np.isnan(found.time)

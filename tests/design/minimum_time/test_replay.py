@@ -10,14 +10,13 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 
 from sailviz.constants import AU, DAY, MU_SUN
-from sailviz.design.minimum_time import costates
-from sailviz.design.minimum_time import replay as reflight
+from sailviz.design.minimum_time import costates, replay
 from sailviz.design.minimum_time.state_costate import SPEED_UNIT, TIME_UNIT, canonical_sail
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
 from sailviz.propulsion import electric_sail, solar_sail
 from sailviz.propulsion.devices import sail
-from sailviz.steering import attitude as law
+from sailviz.steering import attitude
 from sailviz.steering.optimal import optimal_pitch
 
 # flight times in days and initial costates: one without a switch, two with two
@@ -34,7 +33,7 @@ def solved(device, tilted=True):
     y = np.array([[1.0, 0, 0], [0, 1.0, 0], [lr, lu, 0], [lu, lv, 0]])
     r, v, lam_r, lam_v = y @ TILT.T if tilted else y
     lam = np.concatenate([lam_r, lam_v])
-    return reflight.Solved(r * AU, v * SPEED_UNIT, lam, days * DAY, device, strength * 1e-3)
+    return replay.Solved(r * AU, v * SPEED_UNIT, lam, days * DAY, device, strength * 1e-3)
 
 
 def end(flight):
@@ -51,7 +50,7 @@ def canonical(position, velocity):
 @pytest.mark.parametrize("device", ROWS)
 def test_primer_alone_repeats_the_flight(device):
     flight = solved(device)
-    history = reflight.primer_history(flight)
+    history = replay.primer_history(flight)
     assert history.error <= 1e-10
     primer = CubicHermiteSpline(history.time, history.primer, history.rate)
 
@@ -80,13 +79,13 @@ def test_primer_alone_repeats_the_flight(device):
 @pytest.mark.parametrize("device", ROWS)
 def test_table_of_attitudes_repeats_the_flight(device):
     flight = solved(device)
-    table = reflight.steering_table(flight)
+    table = replay.steering_table(flight)
     assert table.error <= 1e-6
     kind, parameters = sail(device, flight.characteristic_acceleration)
-    rows = law.table(table.time, table.pitch, table.clock, table.throttle)
+    rows = attitude.table(table.time, table.pitch, table.clock, table.throttle)
     model = dynamics.model(
-        MU_SUN, device=kind, device_parameters=parameters, steering=law.TABLE_ORBITAL, table=rows,
-        interpolation=law.LINEAR,
+        MU_SUN, device=kind, device_parameters=parameters, steering=attitude.TABLE_ORBITAL, table=rows,
+        interpolation=attitude.LINEAR,
     )  # fmt: skip
     breaks = np.unique(table.time)
     s, out = dop853.start(0.0, table.position, table.velocity, 1.0), np.empty((6, 1))
@@ -97,14 +96,14 @@ def test_table_of_attitudes_repeats_the_flight(device):
 
 
 def test_table_has_two_rows_at_a_switch():
-    table = reflight.steering_table(solved("electric-sail"))
+    table = replay.steering_table(solved("electric-sail"))
     assert len(table.switches) == 2
     for at in table.switches:
         pair = np.flatnonzero(table.time == at)
         assert len(pair) == 2
         assert sorted(table.throttle[pair]) == [0, 1]
     assert set(table.throttle) == {0, 1}
-    film = reflight.steering_table(solved("jpl-2015"))
+    film = replay.steering_table(solved("jpl-2015"))
     before, after = np.flatnonzero(film.time == film.switches[0])
     jump = sorted(np.degrees(np.abs(film.pitch[[before, after]])))
     assert jump == pytest.approx([74.2160, 90.0], abs=1e-3)  # the pitch at the jump
@@ -118,15 +117,13 @@ def test_primer_of_a_planar_flight_is_that_of_any_unit_of_length():
     near = solved("ideal", tilted=False)
     unit = 1.3**1.5
     # the ideal sail's thrust and the Sun's pull fall alike: the same flight on another scale, r^1.5 slower
-    far = reflight.from_planar(start, radius, near.time * unit, "ideal", strength * 1e-3)
-    a, b = (reflight.primer_history(x, error=1e-6) for x in (near, far))
+    far = replay.from_planar(start, radius, near.time * unit, "ideal", strength * 1e-3)
+    a, b = (replay.primer_history(x, error=1e-6) for x in (near, far))
     assert b.primer / 1.3**2 == pytest.approx(a.primer, rel=1e-9, abs=1e-9 * np.abs(a.primer).max())
     assert end(far)[:3] / 1.3 == pytest.approx(end(near)[:3], abs=1e-10)
 
 
 def test_costates_that_fall_into_the_sun_are_refused():
-    flight = reflight.Solved(
-        np.array([AU, 0, 0]), np.zeros(3), np.array([1.0, 0, 0, 1, 0, 0]), 300 * DAY, "ideal", 1e-4
-    )
+    flight = replay.Solved(np.array([AU, 0, 0]), np.zeros(3), np.array([1.0, 0, 0, 1, 0, 0]), 300 * DAY, "ideal", 1e-4)
     with pytest.raises(ValueError, match="cannot be flown"):
-        reflight.primer_history(flight)
+        replay.primer_history(flight)

@@ -179,7 +179,7 @@ def test_every_shipped_scene_is_listed_by_name(shell):
 
 def test_check_imports_neither_rerun_nor_numba_nor_scipy(tmp_path):
     program = (
-        "import sys; from sailviz.cli import main; main(['check', 'displaced/circular'], standalone_mode=False);"
+        "import sys; from sailviz.cli.main import main; main(['check', 'displaced/circular'], standalone_mode=False);"
         "print([m for m in ('rerun', 'numba', 'scipy') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=True)

@@ -7,7 +7,6 @@ from sailviz.lazy import lazily
 if TYPE_CHECKING:
     from sailviz.recording.comparison.comparer import compare as compare
     from sailviz.recording.comparison.differences import Difference as Difference
-    from sailviz.recording.comparison.digest import digest as digest
     from sailviz.recording.comparison.result import Comparison as Comparison
     from sailviz.recording.comparison.tolerances import Tolerances as Tolerances
 
@@ -16,6 +15,5 @@ _HOMES = {
     "Comparison": "result",
     "Difference": "differences",
     "Tolerances": "tolerances",
-    "digest": "digest",
 }
 __getattr__, __dir__, __all__ = lazily(__name__, _HOMES)

@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 from sailviz.lazy import lazily
 
 if TYPE_CHECKING:
-    from sailviz.recording.views.info import info as info
     from sailviz.recording.views.movie import MovieReport as MovieReport
     from sailviz.recording.views.movie import make_movie as make_movie
     from sailviz.recording.views.notebook import show as show
@@ -13,7 +12,6 @@ if TYPE_CHECKING:
     from sailviz.recording.views.screenshot import picture as picture
 
 _HOMES = {
-    "info": "info",
     "picture": "screenshot",
     "PictureReport": "screenshot",
     "make_movie": "movie",

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from datetime import UTC, datetime
+from datetime import date, datetime
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from sailviz.constants import MU_EARTH, MU_SUN, RADIUS_EARTH, RADIUS_SUN
 from sailviz.errors import RecordingError
-from sailviz.run import resample
+from sailviz.run import dates, resample, unit_guard
 from sailviz.run.arrays import Body, Event, Reference
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    Epoch = np.datetime64 | datetime | str  # UTC
+    Epoch = np.datetime64 | datetime | date | str  # UTC
     Curves = Mapping[str, ArrayLike] | Iterable[Reference | tuple[str, ArrayLike]]
     Events = Iterable[Event | tuple[str, float]]
 
@@ -30,7 +30,7 @@ LABELS = {
 NOTHING = np.zeros(0)
 BODIES = {"Sun": Body("Sun", MU_SUN, RADIUS_SUN), "Earth": Body("Earth", MU_EARTH, RADIUS_EARTH)}
 INSIDE = 0.9  # of the body's radius: what lies deeper is rather in the wrong unit than in the ground
-TOO_FAST = 30.0  # how many times farther than its velocity says a craft may move between two rows
+ONE_PLACE = 1e-6  # of the distance: two rows of one time closer than this are one place, where the velocity jumps
 
 
 class TrajectoryError(RecordingError, ValueError):
@@ -67,9 +67,9 @@ class ArrayChecks:
     def array(self, name: str, values: ArrayLike, wanted: str) -> np.ndarray:
         """float64 and finite, a copy of its own."""
         try:
-            found = np.array(values, dtype=float)
-        except (TypeError, ValueError):
-            return self.refuse(f"{name}: not an array of numbers, wanted {wanted}")
+            found = dates.numbers(values)
+        except dates.DateError as error:
+            return self.refuse(f"{name}: {str(error).removeprefix('is ')}, wanted {wanted}")
         if found.size == 0:
             return self.refuse(f"{name}: has no values, wanted {wanted}")
         if name == "time" and found.ndim != 1:
@@ -79,11 +79,39 @@ class ArrayChecks:
             self.say(f"{name}: row {index[0]} is not a number ({found[tuple(index)]})")
         return found
 
-    def increasing(self, name: str, values: np.ndarray) -> None:
-        down = np.flatnonzero(~(np.diff(values) > 0) & np.isfinite(np.diff(values)))
+    def times(self, values: object, epoch: np.datetime64 | None) -> tuple[np.ndarray, np.datetime64 | None]:
+        """(times (n,) s, epoch): numbers, spans of any unit, or dates, which bring an epoch along."""
+        try:
+            found, epoch = dates.seconds_of(values, epoch)
+        except dates.DateError as error:
+            return self.refuse(f"time: {str(error).removeprefix('is ')}, wanted (n,)"), epoch
+        found = self.array("time", found, "(n,)")
+        if found is NOTHING or not np.isfinite(found).all():
+            return found, epoch
+        down = np.flatnonzero(np.diff(found) < 0)
         if len(down):
             i = int(down[0])
-            self.say(f"{name}: does not increase from row {i} ({values[i]:.10g}) to row {i + 1} ({values[i + 1]:.10g})")
+            self.say(f"time: goes back from row {i} ({found[i]:.10g}) to row {i + 1} ({found[i + 1]:.10g})")
+        return found, epoch
+
+    def reach(self, time: np.ndarray, epoch: np.datetime64 | None) -> None:
+        """Whether a recording's clock reaches that far."""
+        try:
+            dates.span_in_reach(float(time.min()), float(time.max()), epoch)
+        except dates.DateError as error:
+            self.say(f"time: {error}")
+
+    def order(self, time: np.ndarray, position: np.ndarray) -> None:
+        """Rows of one time must be one place: there the velocity jumps."""
+        pairs = np.flatnonzero(np.diff(time) == 0)
+        off = np.linalg.norm(position[pairs + 1] - position[pairs], axis=1)
+        apart = np.flatnonzero(off > ONE_PLACE * np.linalg.norm(position[pairs], axis=1))
+        if len(apart):
+            row, gap = int(pairs[apart[0]]), off[apart[0]]
+            self.say(
+                f"time: does not increase from row {row} to row {row + 1} (both {time[row]:.10g}), and they are "
+                f"{gap:.4g} m apart: a jump of the velocity has one place"
+            )
 
     def vectors(self, name: str, values: ArrayLike, rows: int | None) -> np.ndarray:
         """(n, 3) for n rows, or for any number."""
@@ -125,19 +153,11 @@ class ArrayChecks:
 
     def epoch(self, value: Epoch | None) -> np.datetime64 | None:
         """UTC to the nanosecond."""
-        if value is None:
-            return None
         try:
-            if isinstance(value, datetime) and value.tzinfo:
-                value = value.astimezone(UTC).replace(tzinfo=None)
-            found = np.array([value.removesuffix("Z") if isinstance(value, str) else value], "datetime64[ns]")
-        except (TypeError, ValueError):
-            self.say(f"epoch: {value!r} is no date; wanted a datetime64, datetime or text like 2031-04-01T12:00")
+            return dates.epoch_of(value)
+        except dates.DateError as error:
+            self.say(f"epoch: {error}")
             return None
-        if np.isnat(found[0]):
-            self.say("epoch: is not a time")
-        moment: np.datetime64 | None = found[0]
-        return moment
 
     def environment(self, columns: Mapping[str, ArrayLike], rows: int | None) -> dict[str, np.ndarray]:
         """(n,) or (n, 3) columns by their names; truth values stay such."""
@@ -187,8 +207,12 @@ class ArrayChecks:
         if len(zero):
             self.say(f"{name}: row {zero[0]} is the zero vector")
 
-    def units(self, time: np.ndarray, position: np.ndarray, velocity: np.ndarray, body: Body) -> None:
-        """What is plainly in kilometres."""
+    def units(self, time: np.ndarray, position: np.ndarray, velocity: np.ndarray, body: Body) -> str:
+        """Whether the rows are in SI -> what is strange about them though it may be so, "" for nothing."""
+        wrong, strange = unit_guard.fault(time, position, velocity, body.mu)
+        if wrong:
+            self.say(wrong)
+            return ""
         distance = np.linalg.norm(position, axis=1)
         row = int(np.argmin(distance))
         if distance[row] == 0:
@@ -198,9 +222,4 @@ class ArrayChecks:
                 f"position: row {row} lies {distance[row]:.4g} m from the centre of the {body.name}, whose radius is "
                 f"{body.radius:.4g} m; are these kilometres?"
             )
-        elif len(time) > 1:
-            moved = np.linalg.norm(np.diff(position, axis=0), axis=1) / np.diff(time)
-            speed = np.linalg.norm(velocity, axis=1)
-            ratio = float(np.median(moved / np.maximum(speed[1:], 1e-300)))
-            if ratio > TOO_FAST:
-                self.say(f"velocity: the craft moves {ratio:.3g} times as fast; are these kilometres a second?")
+        return strange

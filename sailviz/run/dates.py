@@ -16,6 +16,7 @@ import numpy as np
 FIRST_YEAR, LAST_YEAR = 1678, 2262  # what 64 bits of nanoseconds reach, 1677-09-21 to 2262-04-11
 OUT_OF_REACH = f"lies outside the years {FIRST_YEAR} to {LAST_YEAR} that a recording's clock reaches"
 _EARLIEST, _LATEST = datetime(1677, 9, 21, 0, 12, 44), datetime(2262, 4, 11, 23, 47, 16)
+LONGEST = 2**63 / 1e9  # s, what 64 bits of nanoseconds reach
 _UNIX = date(1970, 1, 1)
 _DAY = 86_400 * 10**9  # ns
 
@@ -197,6 +198,15 @@ def _from_datetime64(value: np.datetime64) -> np.datetime64:
     in_reach(coarse)
     in_ns: np.datetime64 = value.astype("datetime64[ns]")
     return in_ns
+
+
+def span_in_reach(first: float, last: float, epoch: np.datetime64 | None) -> None:
+    """DateError for times, s after the epoch if there is one, that a recording's clock does not reach."""
+    if max(abs(first), abs(last)) > LONGEST:
+        raise DateError(f"{max(abs(first), abs(last)):.4g} s is beyond the 292 years that a recording's clock reaches")
+    if epoch is not None:
+        for edge in (first, last):
+            epoch_of(epoch.astype("datetime64[us]") + np.timedelta64(round(edge * 1e6), "us"))
 
 
 def seconds_of(values: object, epoch: np.datetime64 | None = None) -> tuple[np.ndarray, np.datetime64 | None]:

@@ -99,7 +99,7 @@ def trajectory(
             "device": given.device,
         },
         versions={"sailviz": __version__, "python": platform.python_version(), "numpy": np.__version__},
-        accuracy=accuracy,
+        accuracy=f"{accuracy} {given.note[0].upper()}{given.note[1:]}." if given.note else accuracy,
         identity="",
         play_duration=float(play_duration),
     )
@@ -123,11 +123,12 @@ class _Given:
     environment: dict[str, np.ndarray]
     references: tuple[Reference, ...]
     events: tuple[Event, ...]
+    note: str  # what is strange about the rows though it may be so
 
 
 def _checked(
     check: ArrayChecks,
-    time: ArrayLike,
+    time: object,
     position: ArrayLike,
     velocity: ArrayLike,
     normal: ArrayLike | None,
@@ -141,24 +142,40 @@ def _checked(
     events: Events,
 ) -> _Given:
     """TrajectoryError with everything that is wrong, in the order of the arguments."""
-    times = check.array("time", time, "(n,)")
-    check.increasing("time", times)
+    moment = check.epoch(epoch)
+    times, moment = check.times(time, moment)
     rows = len(times) or None
     places, velocities = check.vectors("position", position, rows), check.vectors("velocity", velocity, rows)
     normals = None if normal is None else check.vectors("normal", normal, rows)
     pushes = np.zeros((rows or 0, 3)) if thrust is None else check.vectors("thrust", thrust, rows)
-    masses, centre, moment = check.mass(mass, rows), check.body(*body), check.epoch(epoch)
+    masses, centre = check.mass(mass, rows), check.body(*body)
     kind = device or ("solar-sail" if normal is not None else "thruster" if thrust is not None else "none")
     if kind not in LABELS:
         check.say(f"device: {kind!r} is not one of {', '.join(LABELS)}")
     columns, curves = check.environment(environment or {}, rows), check.references(references)
     if check.good:
-        check.units(times, places, velocities, centre)
+        check.order(times, places)
+    strange = check.units(times, places, velocities, centre) if check.good else ""
+    if check.good:
+        check.reach(times, moment)
     marks = check.events(events, times, places, velocities) if check.good else ()
     if check.good and normals is not None:
         check.no_zeros("normal", normals)
     check.finish()
-    return _Given(times, places, velocities, normals, pushes, masses, centre, moment, kind, columns, curves, marks)
+    marks = _with_jumps(marks, times, places, velocities, masses)
+    note = "" if pushes.any() else strange  # thrust explains what gravity does not
+    return _Given(
+        times, places, velocities, normals, pushes, masses, centre, moment, kind, columns, curves, marks, note
+    )  # fmt: skip
+
+
+def _with_jumps(
+    events: tuple[Event, ...], time: np.ndarray, position: np.ndarray, velocity: np.ndarray, mass: np.ndarray
+) -> tuple[Event, ...]:
+    """The events, and one wherever two rows have one time: there the velocity jumps."""
+    states = np.column_stack([position, velocity, mass])
+    jumps = [Event("velocity jumps", float(time[row]), states[row + 1]) for row in np.flatnonzero(np.diff(time) == 0)]
+    return tuple(sorted([*events, *jumps], key=lambda event: event.time))
 
 
 def _derived(given: _Given, setting: Setting, bodies: dict[str, np.ndarray]) -> Run:

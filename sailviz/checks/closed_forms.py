@@ -29,7 +29,7 @@ def kepler(start: Run) -> Motion:
     r, sigma = np.linalg.norm(r_vec), r_vec @ v_vec / np.sqrt(mu)
     alpha = 2 / r - v_vec @ v_vec / mu  # 1 / a
 
-    def ellipse(time):
+    def ellipse(time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         a = 1 / alpha
         e_cos, e_sin = 1 - r / a, sigma / np.sqrt(a)
         e, first = np.hypot(e_cos, e_sin), np.arctan2(e_sin, e_cos)
@@ -37,7 +37,7 @@ def kepler(start: Run) -> Motion:
         c, s = np.cos(anomaly - first), np.sin(anomaly - first)
         return 1 - a / r * (1 - c), a * sigma / np.sqrt(mu) * (1 - c) + r * np.sqrt(a / mu) * s
 
-    def universal(time):
+    def universal(time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         x, due = np.sqrt(mu) * time / r, np.sqrt(mu) * time
         for _ in range(60):  # Laguerre's method of order 5, which converges from anywhere
             c2, c3 = _stumpff(alpha * x * x)
@@ -50,20 +50,20 @@ def kepler(start: Run) -> Motion:
 
     solution = ellipse if alpha * r > 0.05 else universal
 
-    def motion(time):
+    def motion(time: np.ndarray) -> np.ndarray:
         f, g = solution(time)
         return f[:, None] * r_vec + g[:, None] * v_vec
 
     return motion
 
 
-def _stumpff(z):
+def _stumpff(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(1 - cos sqrt z) / z and (sqrt z - sin sqrt z) / sqrt z^3, and what they become for z <= 0. (n,) -> two (n,)"""
     q = np.sqrt(np.maximum(np.abs(z), 1e-300))
     with np.errstate(over="ignore", invalid="ignore"):
         far2 = np.where(z > 0, 2 * np.sin(q / 2) ** 2, 2 * np.sinh(q / 2) ** 2) / q**2
         far3 = np.where(z > 0, q - np.sin(q), np.sinh(q) - q) / q**3
-    near2 = near3 = 0.0
+    near2, near3 = np.zeros_like(q), np.zeros_like(q)
     for k in range(11, -1, -1):  # Horner's scheme of sum (-z)^k / (2k + 2)! and / (2k + 3)!
         near2 = near2 * -z + 1 / math.factorial(2 * k + 2)
         near3 = near3 * -z + 1 / math.factorial(2 * k + 3)
@@ -84,7 +84,7 @@ def displaced_orbit(start: Run) -> Motion:
     rho2 = x * x + y * y
     rate = (x * start.velocity[0, 1] - y * start.velocity[0, 0]) / rho2
 
-    def motion(time):
+    def motion(time: np.ndarray) -> np.ndarray:
         c, s = np.cos(rate * time), np.sin(rate * time)
         return np.stack([x * c - y * s, x * s + y * c, np.full_like(c, z)], axis=1)
 
@@ -104,7 +104,7 @@ def logarithmic_spiral(start: Run) -> Motion:
     v_t = np.linalg.norm(t_vec)
     t_hat = t_vec / v_t
 
-    def motion(time):
+    def motion(time: np.ndarray) -> np.ndarray:
         u = 1.5 * v_r * time / r0
         with np.errstate(invalid="ignore"):
             r = r0 * (1 + u) ** (2 / 3)

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
-from sailviz.checks.closed_forms import FORMS, error
+from sailviz.checks.closed_forms import FORMS, Motion, error
 from sailviz.elements import elements
-from sailviz.run.arrays import Attitude, Run, Thrust
-from sailviz.scene.loading import Expectation, Scene
+from sailviz.run.arrays import Attitude, Event, Run, Thrust
+from sailviz.scene.loading import Scene
 from sailviz.scene.quantities import of_ensemble, spellings
+from sailviz.scene.sections import STATISTICS_OF_ROWS, Expectation
 
 
 @dataclass(frozen=True)
@@ -35,8 +38,7 @@ class Verdict:
         if np.isnan(self.measured):
             if self.at == "drift":
                 return "it starts at 0 or is never a number: no relative drift"
-            extreme = self.at in ("start", "end", "min", "max", "mean")
-            return "it is never a number" if extreme else "this moment never came"
+            return "it is never a number" if self.at in STATISTICS_OF_ROWS else "this moment never came"
         return f"off by {self.measured - self.expected:+.2g}"
 
     def __str__(self) -> str:
@@ -67,111 +69,176 @@ def table(verdicts: list[Verdict]) -> str:
     )
 
 
+class Reckoning:
+    """One expectation on its way through the blocks of a run."""
+
+    def __init__(self, item: Expectation):
+        self.item = item
+        self.quantity = spellings()[item.quantity]
+        self.found = float("nan")
+        self._first = float("nan")  # value of the first row, for the drift
+        self._last = float("nan")  # of the last row so far, for the mean and for times between blocks
+        self._area = 0.0  # integral over time so far, for the mean
+
+    def add(self, block: Block) -> None:
+        """Look at the next block of the run."""
+        if self.item.ensemble is not None:
+            if block.begins:
+                self._look_at_ensemble(block.run)
+            return
+        WAYS[self._way()](self, block)
+
+    def _way(self) -> str:
+        """How the block is looked at: by a statistic of all rows, at a time, or at an event."""
+        if self.item.at_time is not None:
+            return "at_time"
+        return self.item.at if self.item.at in STATISTICS_OF_ROWS and self.item.at is not None else "event"
+
+    def _look_at_ensemble(self, run: Run) -> None:
+        for ensemble in run.setting.ensembles:
+            if ensemble.name == self.item.ensemble and self.item.statistic is not None:
+                self.found = of_ensemble(ensemble, self.quantity, self.item.statistic)
+
+    def start(self, block: Block) -> None:
+        """The first row."""
+        self._first_known(block.values(self)[0])
+
+    def end(self, block: Block) -> None:
+        """The last row that is a number."""
+        value = block.values(self)[-1]
+        self.found = self.found if np.isnan(value) else float(value)
+
+    def min(self, block: Block) -> None:
+        """The smallest of all rows."""
+        self.found = float(np.fmin(self.found, np.fmin.reduce(block.values(self))))
+
+    def max(self, block: Block) -> None:
+        """The largest of all rows."""
+        self.found = float(np.fmax(self.found, np.fmax.reduce(block.values(self))))
+
+    def drift(self, block: Block) -> None:
+        """The largest relative distance from the first row."""
+        values = block.values(self)
+        self._first = first = float(values[0]) if block.begins else self._first
+        if first != 0 and np.isfinite(first):
+            self.found = float(np.fmax(self.found, np.nanmax(np.abs(values / first - 1), initial=0.0)))
+
+    def mean(self, block: Block) -> None:
+        """The mean over time, by trapezoids."""
+        time, values = self._with_last_row(block)
+        self._area += float(np.trapezoid(values, time))
+        span = time[-1] - block.start
+        self.found = self._area / span if span > 0 else float(values[-1])
+
+    def at_time(self, block: Block) -> None:
+        """The value at a time, by straight lines between the rows, those of two blocks included."""
+        time, values = self._with_last_row(block)
+        moment = self.item.at_time or 0.0
+        if time[0] <= moment <= time[-1]:
+            self._first_known(float(np.interp(moment, time, values)))
+
+    def event(self, block: Block) -> None:
+        """At the first event of the name."""
+        for event in block.run.events:
+            if event.name == self.item.at:
+                self._first_known(block.values(self, _row_at(block.run, event))[0])
+                return
+
+    def _first_known(self, value: float) -> None:
+        """Of several values the first that is a number counts."""
+        if np.isnan(self.found):
+            self.found = float(value)
+
+    def _with_last_row(self, block: Block) -> tuple[np.ndarray, np.ndarray]:
+        """Times and values of the block, the last row of the block before included."""
+        time, values = block.run.time, block.values(self)
+        if not block.begins:
+            time, values = np.append(block.end_before, time), np.append(self._last, values)
+        self._last = float(values[-1])
+        return time, values
+
+
+WAYS: dict[str, Callable[[Reckoning, Block], None]] = {
+    "start": Reckoning.start,
+    "end": Reckoning.end,
+    "min": Reckoning.min,
+    "max": Reckoning.max,
+    "mean": Reckoning.mean,
+    "drift": Reckoning.drift,
+    "at_time": Reckoning.at_time,
+    "event": Reckoning.event,
+}
+
+
+@dataclass(frozen=True)
+class Block:
+    """Consecutive rows of a run, and what came before them."""
+
+    run: Run
+    begins: bool  # the run begins with it
+    start: float  # s, of the run's first row
+    end_before: float  # s, of the last row before the block
+    longitude_before: float  # rad, of that row, unwrapped
+    motions: dict[str, Motion]  # closed forms from the first row
+
+    def values(self, asked: Reckoning, run: Run | None = None) -> np.ndarray:
+        """What is asked for in each row of the block, or of a run in its place; in the unit asked for."""
+        run = self.run if run is None else run
+        if asked.item.closed_form is not None:
+            return error(self.motions[asked.item.closed_form], self.start, run)
+        if asked.quantity.stem == "longitude":
+            return self.longitude(run) / asked.quantity.factor
+        return asked.quantity.of(run)
+
+    def longitude(self, run: Run) -> np.ndarray:
+        """Unwrapped over the blocks, rad."""
+        longitude = spellings()["longitude_rad"].of(run)
+        turns: np.ndarray = np.round((self.longitude_before - longitude[0]) / (2 * np.pi))
+        return longitude + 2 * np.pi * turns
+
+
 class Judge:
     """Takes the blocks of a run as they come; `verdicts` at the end."""
 
     def __init__(self, scene: Scene):
-        self._expected = scene.expect
-        self._quantities = [spellings()[item.quantity] for item in scene.expect]
-        self._found = [np.nan] * len(scene.expect)
-        self._first = [np.nan] * len(scene.expect)  # value of the first row, for the drift
-        self._last = [np.nan] * len(scene.expect)  # of the last row so far, for the mean and for times between blocks
-        self._areas = [0.0] * len(scene.expect)  # integral over time so far, for the mean
+        self._reckonings = [Reckoning(item) for item in scene.expect]
         self._start: float | None = None  # s
         self._end = 0.0  # time of the last row so far, s
-        self._motions: dict = {}  # closed forms from the first row
-        self._longitude = 0.0  # of the last row so far, unwrapped
+        self._longitude = 0.0  # of that row, unwrapped
+        self._motions: dict[str, Motion] = {}  # closed forms from the first row
 
     def add(self, run: Run) -> None:
         """Look at the next block."""
         begins = self._start is None
-        if begins:
+        if self._start is None:
             self._start = float(run.time[0])
-            names = {item.closed_form for item in self._expected if item.closed_form}
-            self._motions = {name: FORMS[name](run) for name in names}
-            ensembles = {ensemble.name: ensemble for ensemble in run.setting.ensembles}
-            for i, (item, quantity) in enumerate(zip(self._expected, self._quantities, strict=True)):
-                if item.ensemble in ensembles:
-                    self._found[i] = of_ensemble(ensembles[item.ensemble], quantity, item.statistic)
-        for i, (item, quantity) in enumerate(zip(self._expected, self._quantities, strict=True)):
-            if item.ensemble is not None:
-                continue
-            if item.at in ("mean", "drift"):
-                self._gather(i, item, self._column(item, quantity, run), run, begins)
-                continue
-            if item.at_time is not None:
-                value = self._at_time(i, item, self._column(item, quantity, run), run, begins)
-            else:
-                value = self._value(item, quantity, run)
-            if value is None or np.isnan(value):
-                continue
-            old = self._found[i]
-            if item.at == "min":
-                value = np.fmin(old, value)
-            elif item.at == "max":
-                value = np.fmax(old, value)
-            elif item.at != "end" and not np.isnan(old):
-                continue  # start, a time or the first event of this name: the first value counts
-            self._found[i] = float(value)
-        self._longitude = float(self._unwrapped(run)[-1])
+            forms = {one.item.closed_form for one in self._reckonings}
+            self._motions = {name: FORMS[name](run) for name in forms if name}
+        block = Block(run, begins, self._start, self._end, self._longitude, self._motions)
+        for one in self._reckonings:
+            one.add(block)
+        self._longitude = float(block.longitude(run)[-1])
         self._end = float(run.time[-1])
 
     def verdicts(self) -> list[Verdict]:
         """What came of each expectation, in the order of the scene."""
         return [
             Verdict(
-                _name(item),
-                item.at if item.at is not None else f"t = {item.at_time:.10g} s",
-                item.value,
-                item.within if item.within is not None else abs(item.value) * item.within_percent / 100,
-                found,
+                _name(one.item),
+                one.item.at if one.item.at is not None else f"t = {one.item.at_time:.10g} s",
+                one.item.value,
+                _tolerance(one.item),
+                one.found,
             )
-            for item, found in zip(self._expected, self._found, strict=True)
+            for one in self._reckonings
         ]
 
-    def _gather(self, i: int, item: Expectation, values, run: Run, begins: bool) -> None:
-        """Carry a mean over time (trapezoids) or the largest drift on over a block."""
-        if item.at == "drift":
-            self._first[i] = first = values[0] if begins else self._first[i]
-            if first != 0 and np.isfinite(first):
-                self._found[i] = float(np.fmax(self._found[i], np.nanmax(np.abs(values / first - 1), initial=0.0)))
-            return
-        time = run.time
-        if not begins:  # from the last row of the block before
-            time, values = np.append(self._end, time), np.append(self._last[i], values)
-        self._areas[i] += float(np.trapezoid(values, time))
-        self._last[i] = values[-1]
-        span = time[-1] - self._start
-        self._found[i] = self._areas[i] / span if span > 0 else float(values[-1])
 
-    def _at_time(self, i: int, item: Expectation, values, run: Run, begins: bool):
-        """The value at a time, by straight lines between the rows, those of two blocks included; None outside."""
-        time = run.time
-        if not begins:
-            time, values = np.append(self._end, time), np.append(self._last[i], values)
-        self._last[i] = values[-1]
-        return np.interp(item.at_time, time, values) if time[0] <= item.at_time <= time[-1] else None
-
-    def _unwrapped(self, run: Run):
-        longitude = spellings()["longitude_rad"].of(run)
-        return longitude + 2 * np.pi * np.round((self._longitude - longitude[0]) / (2 * np.pi))
-
-    def _value(self, item: Expectation, quantity, run: Run):
-        if item.at in ("start", "end", "min", "max"):
-            values = self._column(item, quantity, run)
-            pick = {"start": lambda v: v[0], "end": lambda v: v[-1], "min": np.nanmin, "max": np.nanmax}[item.at]
-            return None if np.isnan(values).all() else pick(values)
-        for event in run.events:
-            if event.name == item.at:
-                return self._column(item, quantity, _row_at(run, event))[0]
-        return None
-
-    def _column(self, item: Expectation, quantity, run: Run):
-        if item.closed_form is not None:
-            return error(self._motions[item.closed_form], self._start, run)
-        if quantity.stem == "longitude":
-            return self._unwrapped(run) / quantity.factor
-        return quantity.of(run)
+def _tolerance(item: Expectation) -> float:
+    """In the quantity's unit."""
+    if item.within is not None:
+        return item.within
+    return abs(item.value) * (item.within_percent or 0.0) / 100
 
 
 def _name(item: Expectation) -> str:
@@ -181,12 +248,12 @@ def _name(item: Expectation) -> str:
     return item.quantity if item.ensemble is None else f"{item.quantity}, {item.statistic} of {item.ensemble}"
 
 
-def _row_at(run: Run, event) -> Run:
+def _row_at(run: Run, event: Event) -> Run:
     """A Run of one row, the state at an event; attitude and thrust are those of the nearest row."""
     nearest = [int(np.argmin(np.abs(run.time - event.time)))]
     position, velocity = event.state[None, :3], event.state[None, 3:6]
 
-    def row(part):
+    def row(part: Any) -> Any:
         return type(part)(*(getattr(part, f.name)[nearest] for f in fields(part)))
 
     attitude: Attitude = row(run.attitude)

@@ -1,34 +1,68 @@
-"""A scene's events as the propagator watches them."""
+"""A scene's events as the propagator watches them, one record per kind."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from sailviz.propagate import events as happening
+from sailviz.propagate import events
+from sailviz.scene.device import PlasmaBrake
 
 if TYPE_CHECKING:
-    pass
-
+    from sailviz.run.arrays import Body
+    from sailviz.scene.loading import Scene
+    from sailviz.scene.sections import Watched
 
 _SENSE = {"up": 1, "down": -1, "both": 0}
 
 
-def _watched(scene, body):
+@dataclass(frozen=True)
+class Watching:
+    """How a kind of event is watched."""
+
+    function: Callable[[Scene], int]  # of `propagate.events`, whose level is passed
+    level: Callable[[Watched, Body], float] = lambda event, body: 0.0
+    sense: int | None = None  # in which the level is passed: 1 up, -1 down; None as the event says
+
+
+def _plainly(function: int) -> Callable[[Scene], int]:
+    return lambda scene: function
+
+
+def _mean_axis(scene: Scene) -> int:
+    return events.MEAN_AXIS if scene.environment.j2 else events.AXIS
+
+
+def _radius(event: Watched, body: Body) -> float:
+    return event.radius or 0.0
+
+
+def _over_the_surface(event: Watched, body: Body) -> float:
+    return body.radius + (event.altitude or 0.0)
+
+
+EVENTS = {
+    "radius": Watching(_plainly(events.RADIUS), _radius),
+    "altitude": Watching(_plainly(events.RADIUS), _over_the_surface),
+    "mean-altitude": Watching(_mean_axis, _over_the_surface),
+    "periapsis": Watching(_plainly(events.APSIS), sense=1),
+    "apoapsis": Watching(_plainly(events.APSIS), sense=-1),
+    "node": Watching(_plainly(events.NODE)),
+    "escape": Watching(_plainly(events.ENERGY), sense=1),
+}
+
+
+def watched(scene: Scene, body: Body) -> tuple[tuple[str, ...], events.Watch]:
     """Names and Watch of the scene's events and of those that come with a device."""
     names, rows = [], []
     for event in scene.event:
-        sense = _SENSE[event.sense]
-        kind = {"radius": happening.RADIUS, "altitude": happening.RADIUS, "node": happening.NODE}.get(event.kind)
-        level = event.radius or (body.radius + event.altitude if event.altitude else 0.0)
-        if event.kind == "mean-altitude":
-            kind = happening.MEAN_AXIS if scene.environment.j2 else happening.AXIS
-        elif event.kind == "escape":
-            kind, sense = happening.ENERGY, 1
-        elif event.kind in ("periapsis", "apoapsis"):
-            kind, sense = happening.APSIS, 1 if event.kind == "periapsis" else -1
+        kind = EVENTS[event.kind]
+        sense = _SENSE[event.sense] if kind.sense is None else kind.sense
+        action = events.STOP if event.stop else events.RECORD
         names.append(event.name or event.kind)
-        rows.append((kind, level, sense, happening.STOP if event.stop else happening.RECORD))
-    if scene.device.kind == "plasma-brake":
+        rows.append((kind.function(scene), kind.level(event, body), sense, action))
+    if isinstance(scene.device, PlasmaBrake):
         names.append("brake off")
-        rows.append((happening.RADIUS, body.radius + scene.device.off_below, -1, happening.END_OF_USE))
-    return tuple(names), happening.watch(rows)
+        rows.append((events.RADIUS, body.radius + scene.device.off_below, -1, events.END_OF_USE))
+    return tuple(names), events.watch(rows)

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
-    pass
+    from sailviz.scene.loading import Scene
 
 
-def _identity(scene, **functions) -> str:
+def identity_of(scene: Scene, **functions: Any) -> str:
     """Hash of the scene and of the user's functions, each under the name of its part."""
     digest = hashlib.sha256(scene.identity().encode())
     for part, function in functions.items():
@@ -20,7 +20,7 @@ def _identity(scene, **functions) -> str:
     return digest.hexdigest()[:16]
 
 
-def _written(function, seen=()) -> str:
+def _written(function: Any, seen: tuple[Any, ...] = ()) -> str:
     """What a user's function is made of: its code, its constants and what it takes from around it, functions too."""
     function = getattr(function, "py_func", getattr(function, "__wrapped__", function))
     code = getattr(function, "__code__", None)
@@ -29,7 +29,7 @@ def _written(function, seen=()) -> str:
     if code is None:
         return type(function).__name__
     if code in seen:
-        return code.co_name
+        return str(code.co_name)
     around = {name: function.__globals__[name] for name in code.co_names if name in function.__globals__}
     around |= dict(zip(code.co_freevars, (cell.cell_contents for cell in function.__closure__ or ()), strict=True))
     names = [f"{name} = {_written(value, (*seen, code))}" for name, value in around.items()]

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from sailviz import elements as orbital
 from sailviz import frames
 from sailviz.errors import PropagationError
-from sailviz.propagate import dop853, dynamics, gauss_jackson
-from sailviz.propagate import stepping as integration
+from sailviz.propagate import dop853, dynamics, gauss_jackson, stepping
 from sailviz.propagate.choice import DOP853, GAUSS_JACKSON
-from sailviz.run.arrays import Attitude, Event, Run, Thrust, join
-from sailviz.scene.loading import Scene
+from sailviz.run.arrays import Attitude, EnsembleStatistics, Event, Run, Setting, Thrust, join
+from sailviz.scene.loading import SceneSource, load_scene
+from sailviz.scene.sections import Propagation
 from sailviz.simulation.environment_columns import observe, voltages
 from sailviz.simulation.metadata import bodies, planets_in_view, setting_of
 from sailviz.simulation.plan import Plan, plan
@@ -24,11 +25,13 @@ DEFAULT_OUTPUTS = 1000
 INTEGRATORS = {DOP853: dop853, GAUSS_JACKSON: gauss_jackson}
 
 
-def simulate(scene: Scene, *, steering=None, force=None) -> Run:
+def simulate(scene: SceneSource, *, steering: object = None, force: object = None) -> Run:
     """Propagate a scene and return the whole Run.
 
+    scene : a Scene, or what `load_scene` takes: a path, a shipped name ("displaced/circular") or a dict.
+
     steering : own attitude law, force : own additional acceleration in m/s2; each a numba.cfunc of
-    sailviz.propagate.plugs.USER_SIGNATURE or an @njit function (t, x, y, z, vx, vy, vz, m) -> three floats, SI,
+    sailviz.propagate.callbacks.USER_SIGNATURE or an @njit function (t, x, y, z, vx, vy, vz, m) -> three floats, SI,
     inertial. Raises SceneError if the scene asks for something infeasible, PropagationError if the integration
     breaks down.
     """
@@ -36,10 +39,10 @@ def simulate(scene: Scene, *, steering=None, force=None) -> Run:
 
 
 def simulate_blocks(
-    scene: Scene,
+    scene: SceneSource,
     *,
-    steering=None,
-    force=None,
+    steering: object = None,
+    force: object = None,
     block_rows: int = BLOCK_ROWS,
     progress: Callable[[float], None] | None = None,
     drawn: bool = True,
@@ -50,10 +53,10 @@ def simulate_blocks(
     PropagationError is raised, the rows up to it are yielded. Without drawn, planets and other bodies that a picture
     shows beside the craft are left out, which saves half of a short flight.
     """
-    return _blocks(plan(scene, steering, force), block_rows, progress or (lambda fraction: None), drawn)
+    return _blocks(plan(load_scene(scene), steering, force), block_rows, progress or (lambda fraction: None), drawn)
 
 
-def _grid(run) -> tuple[int, float]:
+def _grid(run: Propagation) -> tuple[int, float]:
     """(rows, spacing s) of even output; the last row is the end of the run, or one spacing before it."""
     if run.output_interval is not None:
         return int(np.floor(run.duration / run.output_interval * (1 + 1e-12))) + 1, run.output_interval
@@ -64,16 +67,17 @@ def _grid(run) -> tuple[int, float]:
 class OutputTimes:
     """Times of all rows of a run, s: even, or closer in some windows. Even ones are computed as they are asked for."""
 
-    def __init__(self, run):
+    def __init__(self, run: Propagation) -> None:
         self.rows, self.spacing = _grid(run)
-        self.run, self.uneven = run, None
+        self.run = run
+        self.uneven: np.ndarray | None = None
         if run.dense:
             even = self.between(0, self.rows)
             windows = [np.arange(w.start, w.end + 0.5 * w.output_interval, w.output_interval) for w in run.dense]
             self.uneven = np.unique(np.minimum(np.concatenate([even, *windows]), run.duration))
             self.rows = len(self.uneven)
 
-    def between(self, first, count):
+    def between(self, first: int, count: int) -> np.ndarray:
         """The times of count rows from a first one on."""
         if self.uneven is not None:
             return self.uneven[first : first + count]
@@ -83,57 +87,76 @@ class OutputTimes:
         return times
 
 
-def _blocks(p: Plan, block_rows, progress, drawn):
-    run = p.scene.propagation
-    output = OutputTimes(run)
-    rows = output.rows
+FAILURES = {
+    stepping.UNDERFLOW: "The step size fell below the resolution of time",
+    stepping.NOT_FINITE: "The acceleration is not a finite number",
+}
+
+
+def _blocks(p: Plan, block_rows: int, progress: Callable[[float], None], drawn: bool) -> Iterator[Run]:
+    output = OutputTimes(p.scene.propagation)
     ensembles = _ensembles(p, output) if drawn or any(item.ensemble for item in p.scene.expect) else ()
-    integrator = INTEGRATORS[p.choice.integrator]
-    state = integrator.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
-    setting = None
+    state = INTEGRATORS[p.choice.integrator].start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
+    setting: Setting | None = None
+    planets: dict[str, np.ndarray] = {}
     off_time = np.inf
     switches = list(p.schedule.switches)
-    for first in range(0, rows, block_rows):
-        count = min(block_rows, rows - first)
-        times = output.between(first, count)
+    for first in range(0, output.rows, block_rows):
+        times = output.between(first, min(block_rows, output.rows - first))
         due = [switch for switch in switches if switch[0] <= times[-1]]
         del switches[: len(due)]
-        columns, found, status = _fill(p, state, times, due, rows, progress)
-        if not integration.in_use(state):
-            off_time = min([off_time] + [event.time for event in found if event.name == "brake off"])
-        last = status != integration.DONE or first + count == rows
-        ended = "impact" if status == integration.SURFACE else ""
-        if status == integration.STOPPED:
-            ended = p.names[integration.stopped_by(state)]
-        if ended:  # the state at the event is the last row
-            now = integration.time(state)
-            if not len(columns[0]) or columns[0][-1] < now:
-                end = integration.state(state)[:, None]
-                columns = (np.append(columns[0], now), np.hstack([columns[1], end]))
-        if len(columns[0]):
+        filled = _fill(p, state, times, due, output.rows, progress)
+        if not stepping.in_use(state):
+            off_time = min([off_time] + [event.time for event in filled.events if event.name == "brake off"])
+        ended = _ending(p, state, filled.status)
+        if ended:
+            filled = _with_last_state(filled, state)
+        if len(filled.times):
             if setting is None:
                 planets = planets_in_view(p) if drawn else {}
-                setting = setting_of(p, planets, rows, ensembles)
-            block = _observed(p, *columns, first, off_time)
+                setting = setting_of(p, planets, output.rows, ensembles)
+            block = _observed(p, setting, filled.times, filled.states, first, off_time)
             yield replace(
                 block,
-                setting=setting,
                 bodies=bodies(p, planets, block.time) if drawn else {},
                 approximations={name: way.positions(block.time) for name, way in p.approximations.items()},
-                events=tuple(found),
+                events=tuple(filled.events),
                 ended=ended,
             )
-        if status in (integration.UNDERFLOW, integration.NOT_FINITE):
-            reason = "The step size fell below the resolution of time"
-            if status == integration.NOT_FINITE:
-                reason = "The acceleration is not a finite number"
-            raise PropagationError(reason, integration.time(state), integration.state(state))
-        if last:
-            progress(1.0)
-            return
+        if filled.status in FAILURES:
+            raise PropagationError(FAILURES[filled.status], stepping.time(state), stepping.state(state))
+        if filled.status != stepping.DONE:
+            break
+    progress(1.0)
 
 
-def _ensembles(p: Plan, output):
+@dataclass(frozen=True)
+class Filled:
+    """Rows that the propagator has filled."""
+
+    times: np.ndarray  # (n,) s
+    states: np.ndarray  # (7, n)
+    events: list[Event]
+    status: int  # of `propagate.stepping`
+
+
+def _ending(p: Plan, state: Any, status: int) -> str:
+    """Why a run stopped before its duration; "" if it did not."""
+    if status == stepping.SURFACE:
+        return "impact"
+    return p.names[stepping.stopped_by(state)] if status == stepping.STOPPED else ""
+
+
+def _with_last_state(filled: Filled, state: Any) -> Filled:
+    """The rows with the state at the event that ended the run as the last one."""
+    now = stepping.time(state)
+    if len(filled.times) and filled.times[-1] >= now:
+        return filled
+    end = stepping.state(state)[:, None]
+    return replace(filled, times=np.append(filled.times, now), states=np.hstack([filled.states, end]))
+
+
+def _ensembles(p: Plan, output: OutputTimes) -> tuple[EnsembleStatistics, ...]:
     """The flights beside the scene's own; what they need is imported only where a scene has them."""
     if not p.scene.ensemble and not p.scene.chaos:
         return ()
@@ -142,14 +165,22 @@ def _ensembles(p: Plan, output):
     return ensembles_of(p, output)
 
 
-def _fill(p: Plan, state, times, switches, output_rows, progress):
-    """((times (n,), states (7, n)), events, status) of one block. Switching times are computed along with the rows."""
+def _fill(
+    p: Plan,
+    state: Any,
+    times: np.ndarray,
+    switches: list[tuple[float, str]],
+    output_rows: int,
+    progress: Callable[[float], None],
+) -> Filled:
+    """One block. Switching times are computed along with the rows."""
     run = p.scene.propagation
     moments = np.unique(np.concatenate([times, [time for time, _ in switches]])) if switches else times
     components = 7 if p.model.device == dynamics.THRUSTER else 6
     out = np.empty((components, len(moments)))
     piece = max(1, min(len(moments), output_rows // 50))  # often enough to show progress and to hear Ctrl-C
-    found, status, filled = [], integration.DONE, 0
+    found: list[Event] = []
+    status, filled = stepping.DONE, 0
     for first in range(0, len(moments), piece):
         part = moments[first : first + piece]
         chunk = np.empty((components, len(part)))
@@ -168,15 +199,15 @@ def _fill(p: Plan, state, times, switches, output_rows, progress):
             )
             found += [
                 Event("impact" if index < 0 else p.names[index], time, y)
-                for index, time, y in integration.drain_events(state)
+                for index, time, y in stepping.drain_events(state)
             ]
-            if status != integration.EVENTS_FULL:
+            if status != stepping.EVENTS_FULL:
                 break
-        done = integration.rows_done(state)
+        done = stepping.rows_done(state)
         out[:, first : first + done] = chunk[:, :done]
         filled = first + done
-        progress(integration.time(state) / run.duration)
-        if status != integration.DONE:
+        progress(stepping.time(state) / run.duration)
+        if status != stepping.DONE:
             break
     moments, out = moments[:filled], out[:, :filled]
     states = out if components == 7 else np.vstack([out, np.full((1, filled), p.mass)])
@@ -186,10 +217,10 @@ def _fill(p: Plan, state, times, switches, output_rows, progress):
             found.append(Event(word, time, states[:, at].copy()))
     found.sort(key=lambda event: event.time)
     wanted = np.isin(moments, times)
-    return (moments[wanted], states[:, wanted]), found, status
+    return Filled(moments[wanted], states[:, wanted], found, status)
 
 
-def _observed(p: Plan, time, states, first, off_time) -> Run:
+def _observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, first: int, off_time: float) -> Run:
     """Everything that is derived from states row by row. off_time: s, when the device was switched off for good."""
     interval = np.searchsorted(p.schedule.breaks, time, side="right") - 1
     factor = np.where(time < off_time, p.schedule.factors[interval], 0.0)
@@ -209,7 +240,7 @@ def _observed(p: Plan, time, states, first, off_time) -> Run:
         environment["thrust_voltage_V"] = voltages(p.model)[interval]
     environment |= columns
     return Run(
-        None,
+        setting,
         first,
         time,
         position,

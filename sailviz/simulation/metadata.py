@@ -10,7 +10,6 @@ import numpy as np
 import sailviz
 from sailviz import elements as orbital
 from sailviz import ephemeris
-from sailviz.design.displaced.holding import Track
 from sailviz.environment import ionosphere, solar_level, sun
 from sailviz.propagate import dop853
 from sailviz.propagate import parameters as row
@@ -21,7 +20,7 @@ from sailviz.simulation.bodies import epoch_of, third_body
 from sailviz.simulation.device import sail_strength
 from sailviz.simulation.parameters_in_words import parameters_in_words
 from sailviz.simulation.plan import Plan
-from sailviz.simulation.start import TRACK_POINTS
+from sailviz.simulation.start import departure
 
 SHELL_ANGLES, SHELL_STEP = 120, 25e3  # round the orbit; m between altitudes
 
@@ -104,16 +103,13 @@ def _words_strength(scene, design):
 def _references(p: Plan, planets) -> tuple[Reference, ...]:
     """Curves that are there from the start: the orbit designed, the orbit departed from, the planets' orbits."""
     found = []
-    start = p.scene.start
+    start, begins = p.scene.start, departure(p.scene)
     turn = np.linspace(0, 2 * np.pi, 361)
-    if start.kind == "displaced":
-        rho, z = start.radius * np.cos(start.elevation), start.radius * np.sin(start.elevation)
-        ring = np.column_stack([rho * np.cos(turn), rho * np.sin(turn), np.full_like(turn, z)])
-        found.append(Reference("designed orbit", "target", ring))
-    elif isinstance(p.design, Track):
-        found.append(Reference("designed orbit", "target", p.design.position[: TRACK_POINTS + 1]))
+    designed = begins.designed_curve(start, p.design)
+    if designed is not None:
+        found.append(Reference("designed orbit", "target", designed))
     aim = _target(p)
-    if start.kind in ("circular", "elements") or (aim is not None and start.kind == "cartesian"):
+    if begins.initial_orbit or (aim is not None and begins.towards):
         e = orbital.elements(p.position, p.velocity, p.body.mu)
         if e.eccentricity < 1:
             found.append(Reference("initial orbit", "initial", _ellipse(e, turn, p.body.mu)))

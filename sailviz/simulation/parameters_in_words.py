@@ -2,36 +2,23 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+from sailviz.scene.environment import GammaWind
+from sailviz.simulation.start import departure
 from sailviz.words import acceleration, angle, duration, length
+
+if TYPE_CHECKING:
+    from sailviz.scene.loading import Scene
+    from sailviz.simulation.start import Rows
 
 
 def parameters_in_words(scene, design, strength) -> list[tuple[str, str]]:
     """(name, value) pairs of what distinguishes a scene, most telling first. design: of a designed orbit, or None.
     strength: characteristic acceleration of a sail, m/s2, or None."""
     rows = []
-    start, device = scene.start, scene.device
-    if start.kind == "displaced":
-        rows += [
-            ("distance from the Sun", length(start.radius)),
-            ("elevation", angle(start.elevation)),
-            ("Ω / Ω_K", f"{start.rate_ratio:.6g}"),
-            ("cone angle", angle(float(design.cone))),
-        ]
-    elif start.kind in ("heliostationary", "lagrange-point"):
-        rows += [("distance from the Sun", length(start.radius))]
-    elif start.kind == "planet-following":
-        rows += [("elevation", angle(start.elevation)), ("distance over the planet's", f"{start.radius_ratio:.6g}")]
-    elif start.kind == "flat-ellipse":
-        rows += [("height", length(start.height)), ("eccentricity", f"{start.eccentricity:.6g}")]
-    elif start.kind == "spiral":
-        rows += [("flight-path angle", angle(float(design.flight_path_angle)))]
-    elif start.kind == "circular":
-        sizes = (("radius", start.radius), ("altitude", start.altitude), ("mean altitude", start.mean_altitude))
-        rows += [(f"initial {name}", length(value)) for name, value in sizes if value is not None]
-        if start.inclination:
-            rows += [("inclination", angle(start.inclination))]
-    elif start.kind == "elements":
-        rows += [("semi-major axis", length(start.semi_major_axis)), ("eccentricity", f"{start.eccentricity:.6g}")]
+    device = scene.device
+    rows += departure(scene).words(scene.start, design)
     if strength is not None:
         rows += [("a_c", acceleration(strength))]
         if device.kind == "solar-sail" and device.lightness_number is not None:
@@ -52,13 +39,21 @@ def parameters_in_words(scene, design, strength) -> list[tuple[str, str]]:
         rows += [("pitch", angle(steering.pitch))]
     elif steering is not None and steering.kind == "as designed" and getattr(design.pitch, "ndim", 0) == 0:
         rows += [("pitch", angle(float(design.pitch)))]
+    return rows + _wind(scene) + _expectations(scene)
+
+
+def _wind(scene: Scene) -> Rows:
     wind = scene.environment.solar_wind
-    if wind.kind == "gamma":
-        rows += [
-            ("mean pressure", f"{wind.shape * wind.scale * 1e9:.4g} nPa"),
-            ("redrawn every", duration(wind.redraw)),
-        ]
+    if not isinstance(wind, GammaWind):
+        return []
+    pressure = f"{wind.shape * wind.scale * 1e9:.4g} nPa"
+    return [("mean pressure", pressure), ("redrawn every", duration(wind.redraw))]
+
+
+def _expectations(scene: Scene) -> Rows:
+    """The first of what the scene expects of its own flight."""
+    rows = []
     for item in [item for item in scene.expect if item.ensemble is None][:3]:
-        when = item.at if item.at is not None else duration(item.at_time)
-        rows += [(f"expected {item.quantity} ({when})", f"{item.value:.7g}")]
+        when = item.at if item.at is not None else duration(item.at_time or 0.0)
+        rows.append((f"expected {item.quantity} ({when})", f"{item.value:.7g}"))
     return rows

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+from typing import Any
 
 import numba
 import numpy as np
@@ -15,7 +16,9 @@ from sailviz.propagate import dop853
 from sailviz.propagate import parameters as row
 from sailviz.propagate.choice import GAUSS_JACKSON
 from sailviz.run.arrays import Craft, Reference, Setting, Shell
+from sailviz.scene.body import Target
 from sailviz.scene.start import DesignedStart
+from sailviz.scene.steering import LyapunovSteering
 from sailviz.simulation.bodies import epoch_of, third_body
 from sailviz.simulation.device import sail_strength
 from sailviz.simulation.parameters_in_words import parameters_in_words
@@ -129,17 +132,23 @@ def _ellipse(orbit: orbital.Elements, turn, mu):
 
 def _target(p: Plan) -> tuple[str, orbital.Elements] | None:
     """Name and elements of the orbit that a scene wants to reach, or that its law steers towards."""
-    wanted, law = p.scene.target, p.scene.steering
+    wanted, steering = p.scene.target, p.scene.steering
     if wanted is None:
-        if law is None or law.kind != "lyapunov":
-            return None
-        wanted = law
-    elif wanted.planet is not None:
+        return _aim_of_law(steering) if isinstance(steering, LyapunovSteering) else None
+    if wanted.planet is not None:
         name = wanted.planet.capitalize()
         return wanted.name or f"orbit of {name}", ephemeris.planet_ellipse(name, epoch_of(p.scene))
-    size = getattr(wanted, "radius", None) or wanted.semi_major_axis
-    shape = (size, wanted.eccentricity, wanted.inclination, wanted.raan, wanted.argument, 0.0)
-    return getattr(wanted, "name", None) or "target orbit", orbital.Elements(*shape)
+    return wanted.name or "target orbit", _elements_of(wanted, wanted.radius or wanted.semi_major_axis)
+
+
+def _aim_of_law(steering: LyapunovSteering) -> tuple[str, orbital.Elements]:
+    return "target orbit", _elements_of(steering, steering.semi_major_axis)
+
+
+def _elements_of(orbit: Target | LyapunovSteering, size: float | None) -> orbital.Elements:
+    """Elements of an orbit of a scene, scalars, at its periapsis. size : semi-major axis m."""
+    scalars: list[Any] = [size, orbit.eccentricity, orbit.inclination, orbit.raan, orbit.argument, 0.0]
+    return orbital.Elements(*scalars)
 
 
 def _shells(p: Plan) -> tuple[Shell, ...]:

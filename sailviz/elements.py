@@ -20,12 +20,12 @@ class Elements:
     eccentricity, inclination, raan (right ascension or longitude of the ascending node), argument (of periapsis),
     true_anomaly rad."""
 
-    semi_major_axis: np.ndarray
-    eccentricity: np.ndarray
-    inclination: np.ndarray
-    raan: np.ndarray
-    argument: np.ndarray
-    true_anomaly: np.ndarray
+    semi_major_axis: np.ndarray | float
+    eccentricity: np.ndarray | float
+    inclination: np.ndarray | float
+    raan: np.ndarray | float
+    argument: np.ndarray | float
+    true_anomaly: np.ndarray | float
 
 
 def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements:

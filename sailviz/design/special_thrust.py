@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 from scipy.integrate import quad
 
 from sailviz.propagate import dop853, dynamics
@@ -66,11 +67,11 @@ class RadialThrust:
     period: np.ndarray
     reason: str = ""
 
-    def energy(self, radius):
+    def energy(self, radius: npt.ArrayLike) -> np.ndarray:
         """Orbital energy at a radius: (2.16)."""
         return -0.5 + self.acceleration * (np.asarray(radius, dtype=float) - 1)
 
-    def radial_speed(self, radius):
+    def radial_speed(self, radius: npt.ArrayLike) -> np.ndarray:
         """|r'| at a radius, NaN where the orbit does not go: r'^2 = (r - 1)(2 a r^2 - r + 1) / r^2."""
         r = np.asarray(radius, dtype=float)
         square = (r - 1) * (2 * self.acceleration * r * r - r + 1) / r**2
@@ -99,15 +100,15 @@ class SpiralThrust:
     feasible: np.ndarray
     reason: str = ""
 
-    def radius_at_time(self, time):
+    def radius_at_time(self, time: npt.ArrayLike) -> np.ndarray:
         """r after a time: (1 - a t)^-2, (2.20), the orbit nearly circular all the while."""
         return (1 - self.acceleration * np.asarray(time, dtype=float)) ** -2
 
-    def radius_at_time_linear(self, time):
+    def radius_at_time_linear(self, time: npt.ArrayLike) -> np.ndarray:
         """r after a short time: 1 + 2 a t, the second form of (2.20)."""
         return 1 + 2 * self.acceleration * np.asarray(time, dtype=float)
 
-    def radius_at_angle(self, angle):
+    def radius_at_angle(self, angle: npt.ArrayLike) -> np.ndarray:
         """r after a swept angle in rad: 1 / sqrt(1 - 4 a theta), (2.23); NaN beyond 1 / (4 a)."""
         room = 1 - 4 * self.acceleration * np.asarray(angle, dtype=float)
         return 1 / np.sqrt(np.where(room > 0, room, np.nan))
@@ -117,7 +118,7 @@ class SpiralThrust:
         return _escapes(self.kind, self.acceleration, np.asarray(self.acceleration) > 0)
 
 
-def radial(acceleration) -> RadialThrust:
+def radial(acceleration: npt.ArrayLike) -> RadialThrust:
     """Tsien's problem: constant radial acceleration over mu / r0^2, scalar or array, either sign; see RadialThrust.
 
     The escape integrals run over x = sqrt(r - 1), where nothing is singular:
@@ -142,7 +143,7 @@ def radial(acceleration) -> RadialThrust:
     return RadialThrust(a[()], escapes[()], escape_radius[()], time[()], angle[()], turning[()], period[()], reason)
 
 
-def circumferential(acceleration) -> SpiralThrust:
+def circumferential(acceleration: npt.ArrayLike) -> SpiralThrust:
     """Constant circumferential acceleration over mu / r0^2, scalar or array; see SpiralThrust.
 
     r_esc = 1 / sqrt(2 a) (2.21), t_esc = (1 - r_esc^-1/2) / a (2.22). Rough: the true radius is 1.21 times larger.
@@ -153,7 +154,7 @@ def circumferential(acceleration) -> SpiralThrust:
         return _spiral("circumferential", a, radius, (1 - radius**-0.5) / a, 0.5, CIRCUMFERENTIAL_LIMIT)  # (2.22)
 
 
-def tangential(acceleration) -> SpiralThrust:
+def tangential(acceleration: npt.ArrayLike) -> SpiralThrust:
     """Constant acceleration along the velocity over mu / r0^2, scalar or array; see SpiralThrust.
 
     Battin: r_esc = (20 a^2)^-1/4 (2.26), t_esc = (1 - (20 a^2)^1/8) / a (2.27). Rough: the true radius is 1.86 times
@@ -165,7 +166,7 @@ def tangential(acceleration) -> SpiralThrust:
         return _spiral("tangential", a, radius, (1 - (20 * a * a) ** 0.125) / a, 20**-0.5, TANGENTIAL_LIMIT)  # (2.27)
 
 
-def trajectory(kind, acceleration, time, to_escape=False) -> Trajectory:
+def trajectory(kind: str, acceleration: float, time: npt.ArrayLike, to_escape: bool = False) -> Trajectory:
     """The motion integrated. kind : "radial" | "circumferential" | "tangential". acceleration : scalar over mu / r0^2.
     time (n,) : increasing from 0 on. to_escape : whether to end where the energy passes zero. Error about 1e-11 after
     ten revolutions."""

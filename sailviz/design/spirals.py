@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.design.displaced.force_shape import force_shape
 from sailviz.propulsion.solar_sail import FILMS, Film
@@ -25,39 +26,39 @@ class LogarithmicSpiral:
     eccentricity: np.ndarray
     true_anomaly: np.ndarray
     transverse: np.ndarray  # eps_theta, transverse acceleration over mu / r^2
+    radial: np.ndarray  # eps_r, radial acceleration over mu / r^2
     feasible: np.ndarray
     reason: str = ""
-    radial: np.ndarray = None  # eps_r, radial acceleration over mu / r^2
 
-    def time(self, r0, r1, mu):
+    def time(self, r0: npt.ArrayLike, r1: npt.ArrayLike, mu: float) -> np.ndarray:
         """Flight time in s between two radii in m (r1 on the side the spiral goes), mu in m3/s2."""
         q = np.abs(np.asarray(r1, dtype=float) ** 1.5 - np.asarray(r0, dtype=float) ** 1.5)
         return 2 * q / (3 * np.sqrt(2 * mu * self.transverse * self.slope))
 
-    def angle(self, r0, r1):
+    def angle(self, r0: npt.ArrayLike, r1: npt.ArrayLike) -> np.ndarray:
         """Swept angle in rad between two radii in m."""
         return np.log(np.asarray(r1, dtype=float) / r0) / self.slope
 
     @property
-    def classical_slope(self):
+    def classical_slope(self) -> np.ndarray:
         """tan(gamma) for small angles: 2 eps_t / (1 - eps_r), short by its half square as a share."""
         return np.where(self.feasible, 2 * self.transverse / (1 - self.radial), np.nan)[()]
 
     @property
-    def classical_speed_factor(self):
+    def classical_speed_factor(self) -> np.ndarray:
         """v_theta^2 r / mu of a circular orbit under the Sun lightened by the sail: 1 - eps_r."""
         return np.where(self.feasible, 1 - self.radial, np.nan)[()]
 
-    def classical_time(self, r0, r1, mu):
+    def classical_time(self, r0: npt.ArrayLike, r1: npt.ArrayLike, mu: float) -> np.ndarray:
         """Flight time in s for small angles: (1 / 3) sqrt(1 - eps_r) (r1^1.5 - r0^1.5) / (|eps_t| sqrt(mu))."""
         q = np.abs(np.asarray(r1, dtype=float) ** 1.5 - np.asarray(r0, dtype=float) ** 1.5)
         return q * np.sqrt(self.classical_speed_factor / mu) / (3 * np.abs(self.transverse))
 
-    def classical_angle(self, r0, r1):
+    def classical_angle(self, r0: npt.ArrayLike, r1: npt.ArrayLike) -> np.ndarray:
         """Swept angle in rad for small angles."""
         return np.log(np.asarray(r1, dtype=float) / r0) / self.classical_slope
 
-    def state(self, radius, azimuth, mu):
+    def state(self, radius: float, azimuth: float, mu: float) -> tuple[np.ndarray, np.ndarray]:
         """Position m and velocity m/s, each (3,), in the x-y plane at a radius in m and an azimuth in rad."""
         v_t = np.sqrt(self.speed_factor * mu / radius)
         r_hat = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
@@ -65,7 +66,7 @@ class LogarithmicSpiral:
         return radius * r_hat, v_t * (self.slope * r_hat + t_hat)
 
 
-def logarithmic(lightness, pitch, film: Film | str = "ideal") -> LogarithmicSpiral:
+def logarithmic(lightness: npt.ArrayLike, pitch: npt.ArrayLike, film: Film | str = "ideal") -> LogarithmicSpiral:
     """The spiral that a lightness number and a pitch in rad allow (negative pitch: inwards); scalars or arrays.
 
     tan(gamma) is the small root of eps_t T^2 - (1 - eps_r) T + 2 eps_t = 0, with a_r = eps_r mu/r^2, a_t = eps_t
@@ -97,13 +98,13 @@ def logarithmic(lightness, pitch, film: Film | str = "ideal") -> LogarithmicSpir
         np.where(feasible, np.hypot(e_cos, e_sin), np.nan)[()],
         np.where(feasible, np.arctan2(e_sin, e_cos), np.nan)[()],
         eps_t[()],
+        eps_r[()],
         feasible[()],
         reason,
-        eps_r[()],
     )
 
 
-def largest_lightness(pitch, film: Film | str = "ideal"):
+def largest_lightness(pitch: npt.ArrayLike, film: Film | str = "ideal") -> np.ndarray:
     """Largest lightness number that still spirals at a pitch in rad, same shape: 1 / (k_r + 2 sqrt(2) |k_t|), at a
     flight-path angle of 54.7356 deg. NaN where the film gives no transverse thrust."""
     film = FILMS[film] if isinstance(film, str) else film
@@ -127,7 +128,7 @@ class Insertion:
     reason: str = ""
 
 
-def insertion(eccentricity, true_anomaly, film: Film | str = "ideal") -> Insertion:
+def insertion(eccentricity: npt.ArrayLike, true_anomaly: npt.ArrayLike, film: Film | str = "ideal") -> Insertion:
     """Pitch and lightness number that continue an ellipse as a spiral with the same position and velocity; broadcast.
 
     eccentricity in (0, 1), true_anomaly : rad, where the sail opens. eps_t = e sin(nu) / 2 and
@@ -153,10 +154,8 @@ def insertion(eccentricity, true_anomaly, film: Film | str = "ideal") -> Inserti
     pitch = shape.pitch(np.where(feasible, np.minimum(np.abs(cone), limit), 0.0)) * np.sign(eps_t)
     k_r, _ = film.components(pitch)
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = [
-            np.where(feasible, value, np.nan)[()]
-            for value in (pitch, eps_r / (film.efficiency * k_r), e * np.sin(nu) / (1 + e * np.cos(nu)), cone)
-        ]
+        lightness, slope = eps_r / (film.efficiency * k_r), e * np.sin(nu) / (1 + e * np.cos(nu))
+    pitch, lightness, slope, cone = (np.where(feasible, x, np.nan)[()] for x in (pitch, lightness, slope, cone))
     reason = ""
     if e.ndim == 0 and not feasible:
         if not 0 < e < 1:
@@ -169,4 +168,4 @@ def insertion(eccentricity, true_anomaly, film: Film | str = "ideal") -> Inserti
                 f"the film reaches cone angles up to {np.degrees(limit):.5g} deg; true anomalies of "
                 f"{np.degrees(first):.4f} to {360 - np.degrees(first):.4f} deg are possible, 180 deg excepted"
             )
-    return Insertion(*found, feasible[()], reason)
+    return Insertion(pitch, lightness, slope, cone, feasible[()], reason)

@@ -62,7 +62,7 @@ def draw(name: str, path, style: str = "dark", dpi: int = 160, **options) -> Pat
     try:
         page.save(drawn, path, dpi)
     except OSError as error:
-        raise FigureError(f"cannot write {path}: {error.strerror.lower()}") from None
+        raise FigureError(f"cannot write {path}: {(error.strerror or str(error)).lower()}") from None
     return path
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib import import_module
+from typing import Any
 
 import matplotlib
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,7 @@ class Pen:
 def compose(entry, style_name: str, options) -> Figure:
     """The page: panels, title above, origin below. options : keywords for the drawing function."""
     style = STYLES[style_name]
-    rc = {
+    rc: dict[Any, object] = {
         "font.family": "DejaVu Sans",
         "font.size": 10.5,
         "text.color": style.ink,
@@ -116,9 +118,13 @@ def compose(entry, style_name: str, options) -> Figure:
         "mathtext.fontset": "dejavusans",
     }
     with matplotlib.rc_context(rc):
-        figure = Figure(figsize=entry.size, facecolor=style.page, layout="constrained")
+        layout = ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.10, wspace=0.04)
+        figure = Figure(
+            figsize=entry.size,
+            facecolor=style.page,
+            layout=layout,
+        )
         FigureCanvasAgg(figure)
-        figure.get_layout_engine().set(w_pad=0.12, h_pad=0.10, wspace=0.04)
         axes = figure.subplots(*entry.panels, squeeze=False).ravel()
         for panel in axes:
             for side in panel.spines.values():

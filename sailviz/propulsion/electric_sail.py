@@ -6,6 +6,7 @@ Source: thesis, section 3.3, (3.33)-(3.48), read in excerpt; polynomial coeffici
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.compiled import compiled, inlined
 from sailviz.constants import AU, VACUUM_PERMITTIVITY, WIND_POTENTIAL, WIND_PRESSURE
@@ -66,7 +67,14 @@ def _accelerations(position, normal, ac, model, pitch_limit):
     return out
 
 
-def acceleration(position, normal, characteristic_acceleration, model="final", on=True, pitch_limit=PITCH_LIMIT):
+def acceleration(
+    position: npt.ArrayLike,
+    normal: npt.ArrayLike,
+    characteristic_acceleration: float,
+    model: str = "final",
+    on: bool = True,
+    pitch_limit: float = PITCH_LIMIT,
+) -> np.ndarray:
     """Acceleration of an E-sail, m/s2, (3,) or (n, 3) as the input.
 
     position : (..., 3) m from the Sun. normal : (..., 3) unit vector of the sail plane, either side.
@@ -82,12 +90,12 @@ def acceleration(position, normal, characteristic_acceleration, model="final", o
     ).reshape(shape)
 
 
-def dimensionless_acceleration(pitch):
+def dimensionless_acceleration(pitch: npt.ArrayLike) -> np.ndarray:
     """gamma = |a| / (a_c r_E / r) of the final model at a pitch in rad, same shape: (3.43)."""
     return np.sqrt(1 + 3 * np.cos(pitch) ** 2) / 2
 
 
-def cone_angle(pitch):
+def cone_angle(pitch: npt.ArrayLike) -> np.ndarray:
     """Cone angle phi in rad of the final model at a pitch in rad, same sign and shape: (3.44).
 
     Evaluated as atan2(sin alpha cos alpha, 1 + cos^2 alpha), the same angle without acos' loss of digits near zero.
@@ -96,7 +104,7 @@ def cone_angle(pitch):
     return np.arctan2(s * c, 1 + c * c)
 
 
-def pitch_angle(cone):
+def pitch_angle(cone: npt.ArrayLike) -> np.ndarray:
     """The smaller pitch (larger thrust) of the final model that gives a cone angle, rad, same sign and shape: (3.46).
 
     NaN beyond CONE_MAX = asin(1/3). The thesis' acos form loses half the digits near zero; this is the smaller root
@@ -109,8 +117,19 @@ def pitch_angle(cone):
         return np.arctan(4 * t / (1 + np.sqrt(room)))
 
 
-def characteristic_acceleration(tethers, length, voltage, mass, pressure=WIND_PRESSURE, wind_potential=WIND_POTENTIAL):
+def characteristic_acceleration(
+    tethers: npt.ArrayLike,
+    length: npt.ArrayLike,
+    voltage: npt.ArrayLike,
+    mass: npt.ArrayLike,
+    pressure: npt.ArrayLike = WIND_PRESSURE,
+    wind_potential: npt.ArrayLike = WIND_POTENTIAL,
+) -> np.ndarray:
     """a_c in m/s2 from hardware: number of tethers, length m of each, voltage V, total mass kg, dynamic pressure Pa
     at 1 au, wind_potential V. Source: (3.40) a_c = N L sigma / m, (3.41) sigma = 0.18 max(0, V - V_w) sqrt(eps0 p)."""
-    sigma = 0.18 * np.maximum(0.0, np.subtract(voltage, wind_potential)) * np.sqrt(VACUUM_PERMITTIVITY * pressure)
-    return tethers * length * sigma / mass
+    sigma = (
+        0.18
+        * np.maximum(0.0, np.subtract(voltage, wind_potential))
+        * np.sqrt(np.multiply(VACUUM_PERMITTIVITY, pressure))
+    )
+    return np.multiply(tethers, length) * sigma / np.asarray(mass, dtype=float)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.compiled import inlined
 from sailviz.constants import BOLTZMANN, ELEMENTARY_CHARGE, MASS_ELECTRON, VACUUM_PERMITTIVITY
@@ -19,7 +20,14 @@ MULTI_WIRE = 1.1e-5  # kg/m: 55 g on 5 km, Janhunen, Ann. Geophys. 32, 1207 (201
 ALUMINIUM = 2700.0  # kg/m3
 
 
-def force_per_length(density, ion_mass, speed, voltage, wire_radius=1e-3, polarity="negative"):
+def force_per_length(
+    density: npt.ArrayLike,
+    ion_mass: npt.ArrayLike,
+    speed: npt.ArrayLike,
+    voltage: npt.ArrayLike,
+    wire_radius: float = 1e-3,
+    polarity: str = "negative",
+) -> np.ndarray:
     """Drag per length of tether, N/m; scalars or arrays, broadcast.
 
     density : ions, 1/m3. ion_mass : mean, kg. speed : m/s, relative to the plasma and perpendicular to the tether.
@@ -63,7 +71,13 @@ def positive_force_per_length(density, ion_mass, speed, voltage):
     return 0.18 * max(0.0, voltage - ram_energy) * np.sqrt(VACUUM_PERMITTIVITY * ion_mass * density) * speed
 
 
-def species_force_per_length(densities, ion_masses, speed, voltage, wire_radius=1e-3):
+def species_force_per_length(
+    densities: npt.ArrayLike,
+    ion_masses: npt.ArrayLike,
+    speed: npt.ArrayLike,
+    voltage: npt.ArrayLike,
+    wire_radius: float = 1e-3,
+) -> np.ndarray:
     """Drag per length of a negative tether in several ion species, N/m: each has its own ram pressure and ram energy,
     all share one sheath.
 
@@ -81,7 +95,7 @@ def species_force_per_length(densities, ion_masses, speed, voltage, wire_radius=
     return 3.864 * speed**2 * np.sqrt(VACUUM_PERMITTIVITY * v_t / (ELEMENTARY_CHARGE * total)) * each.sum(axis=-1)
 
 
-def magnetic_factor(angle, reduction=0.0):
+def magnetic_factor(angle: npt.ArrayLike, reduction: float = 0.0) -> np.ndarray:
     """Share of the drag that is left at an angle in rad between tether and magnetic field: 1 - q cos^2(angle).
 
     An assumption of ours: the abstract of Janhunen 2014 says that a field along the tether reduces the thrust "by a
@@ -91,16 +105,16 @@ def magnetic_factor(angle, reduction=0.0):
 
 
 def current(
-    density,
-    ion_mass,
-    speed,
-    voltage,
-    length,
-    wire_diameter,
-    polarity="negative",
-    secondary_yield=0.0,
-    photoemission=0.0,
-):
+    density: npt.ArrayLike,
+    ion_mass: npt.ArrayLike,
+    speed: npt.ArrayLike,
+    voltage: npt.ArrayLike,
+    length: npt.ArrayLike,
+    wire_diameter: npt.ArrayLike,
+    polarity: str = "negative",
+    secondary_yield: npt.ArrayLike = 0.0,
+    photoemission: npt.ArrayLike = 0.0,
+) -> np.ndarray:
     """Current that the tether collects, A; scalars or arrays.
 
     density 1/m3, ion_mass kg, speed m/s, voltage V (absolute), length m, wire_diameter m (sum over the wires of a
@@ -110,13 +124,17 @@ def current(
     cross section, D L, PHOTOELECTRONS in sunlight. Both add to the current of a negative tether; a positive one draws
     its slow electrons back.
     """
-    carrier = {"negative": ion_mass, "positive": MASS_ELECTRON}[polarity]
-    ram = np.asarray(speed, dtype=float) ** 2 if polarity == "negative" else 0.0
-    rate = np.sqrt(2 * ELEMENTARY_CHARGE * np.asarray(voltage, dtype=float) / carrier + ram)
+    density, mass, speed, voltage, length, wire_diameter, secondary, photo = (
+        np.asarray(x, dtype=float)
+        for x in (density, ion_mass, speed, voltage, length, wire_diameter, secondary_yield, photoemission)
+    )
+    carrier = {"negative": mass, "positive": np.asarray(MASS_ELECTRON)}[polarity]
+    ram = speed**2 if polarity == "negative" else 0.0
+    rate = np.sqrt(2 * ELEMENTARY_CHARGE * voltage / carrier + ram)
     collected = ELEMENTARY_CHARGE * density * wire_diameter * length * rate
     if polarity == "positive":
         return collected
-    return collected * (1 + secondary_yield) + photoemission * wire_diameter * length
+    return collected * (1 + secondary) + photo * wire_diameter * length
 
 
 @inlined
@@ -130,28 +148,28 @@ def tether_current(density, ion_mass, speed, voltage, length, wire_diameter, pos
 
 
 def power(
-    density,
-    ion_mass,
-    speed,
-    voltage,
-    length,
-    wire_diameter,
-    efficiency=1.0,
-    polarity="negative",
-    secondary_yield=0.0,
-    photoemission=0.0,
-):
+    density: npt.ArrayLike,
+    ion_mass: npt.ArrayLike,
+    speed: npt.ArrayLike,
+    voltage: npt.ArrayLike,
+    length: npt.ArrayLike,
+    wire_diameter: npt.ArrayLike,
+    efficiency: npt.ArrayLike = 1.0,
+    polarity: str = "negative",
+    secondary_yield: npt.ArrayLike = 0.0,
+    photoemission: npt.ArrayLike = 0.0,
+) -> np.ndarray:
     """Power of the high-voltage supply, W: voltage times `current` over its efficiency. Same arguments."""
     drawn = current(density, ion_mass, speed, voltage, length, wire_diameter, polarity, secondary_yield, photoemission)
     return np.asarray(voltage, dtype=float) * drawn / efficiency
 
 
-def electron_flux(density, electron_temperature):
+def electron_flux(density: npt.ArrayLike, electron_temperature: npt.ArrayLike) -> np.ndarray:
     """Current density of electrons at rest that meets a surface at the plasma's potential, A/m2: e n sqrt(T / (2 pi
     m_e)), temperature in eV. The body of the craft closes the tether's circuit with it: current / electron_flux is the
     area it needs."""
     thermal = np.sqrt(ELEMENTARY_CHARGE * np.asarray(electron_temperature, dtype=float) / (2 * np.pi * MASS_ELECTRON))
-    return ELEMENTARY_CHARGE * density * thermal
+    return np.multiply(ELEMENTARY_CHARGE, density) * thermal
 
 
 @inlined
@@ -162,20 +180,25 @@ def limited_voltage(nominal_voltage, nominal_power, available_power):
     return nominal_voltage * (max(available_power, 0.0) / nominal_power) ** (2.0 / 3.0)
 
 
-def power_limited_voltage(nominal_voltage, nominal_power, available_power):
+def power_limited_voltage(
+    nominal_voltage: npt.ArrayLike, nominal_power: npt.ArrayLike, available_power: npt.ArrayLike
+) -> np.ndarray:
     """Voltage in V that the available power sustains, at most the nominal one: V_nom (P / P_nom)^(2/3), since the
     power of an orbital-motion-limited tether goes with V^1.5. nominal_power : W at nominal_voltage in V. The ram speed
     in the current is neglected: 0.2 % of the power at 1 kV."""
     share = np.asarray(available_power, dtype=float) / nominal_power
-    return nominal_voltage * np.clip(share, 0.0, 1.0) ** (2 / 3)
+    return np.multiply(nominal_voltage, np.clip(share, 0.0, 1.0) ** (2 / 3))
 
 
-def wire_mass(diameter, wires=1, material_density=ALUMINIUM):
+def wire_mass(
+    diameter: npt.ArrayLike, wires: npt.ArrayLike = 1, material_density: npt.ArrayLike = ALUMINIUM
+) -> np.ndarray:
     """Mass per length of bare wires, kg/m: diameter in m, density in kg/m3. One 50 um aluminium wire: 5.301e-6."""
-    return wires * np.pi / 4 * np.asarray(diameter, dtype=float) ** 2 * material_density
+    area = np.multiply(wires, np.pi / 4) * np.asarray(diameter, dtype=float) ** 2
+    return area * np.asarray(material_density, dtype=float)
 
 
-def tether_mass(length, mass_per_length=MULTI_WIRE):
+def tether_mass(length: npt.ArrayLike, mass_per_length: npt.ArrayLike = MULTI_WIRE) -> np.ndarray:
     """Mass of a tether in kg: length in m, mass_per_length in kg/m, that of a published multi-wire tether unless
     given."""
     return np.asarray(length, dtype=float) * mass_per_length
@@ -187,7 +210,13 @@ def tether_tilt(force, orbital_rate, tip_mass, mass, length):
     return np.arctan2(force, 6.0 * orbital_rate * orbital_rate * (tip_mass + mass / 3.0) * length)
 
 
-def tilt(force, orbital_rate, tip_mass, mass, length):
+def tilt(
+    force: npt.ArrayLike,
+    orbital_rate: npt.ArrayLike,
+    tip_mass: npt.ArrayLike,
+    mass: npt.ArrayLike,
+    length: npt.ArrayLike,
+) -> np.ndarray:
     """Angle in rad by which the drag tilts a hanging tether from the vertical, in the orbit plane: tan = F / (6 n^2
     (m_tip + m / 3) L), hinged at a heavy body.
 
@@ -196,15 +225,16 @@ def tilt(force, orbital_rate, tip_mass, mass, length):
     gravity gradient 3 n^2 with sin cos. A tilt of tens of degrees says that such a tether must spin. Re-derived.
     """
     n = np.asarray(orbital_rate, dtype=float)
-    return np.arctan2(force, 6 * n**2 * (np.asarray(tip_mass, dtype=float) + np.asarray(mass) / 3) * length)
+    masses = np.asarray(tip_mass, dtype=float) + np.asarray(mass, dtype=float) / 3
+    return np.arctan2(force, 6 * n**2 * masses * np.asarray(length, dtype=float))
 
 
-def tip_tension(orbital_rate, tip_mass, length):
+def tip_tension(orbital_rate: npt.ArrayLike, tip_mass: npt.ArrayLike, length: npt.ArrayLike) -> np.ndarray:
     """Tension in N that the gravity gradient of a tip mass in kg keeps in a hanging tether: 3 n^2 m L."""
-    return 3 * np.asarray(orbital_rate, dtype=float) ** 2 * tip_mass * length
+    return 3 * np.asarray(orbital_rate, dtype=float) ** 2 * np.multiply(tip_mass, length)
 
 
-def spin_factor(angle=0.0):
+def spin_factor(angle: npt.ArrayLike = 0.0) -> np.ndarray:
     """Mean braking of a spinning tether over that of one across the flow, for an angle in rad between the velocity and
     the spin plane: mean of (1 - cos^2(angle) cos^2(phase))^(3/2), drag going with the square of the speed across.
 
@@ -238,17 +268,24 @@ class Validity:
     tabled: np.ndarray
 
     @property
-    def all(self):
+    def all(self) -> np.ndarray:
         """Whether every assumption holds."""
         return np.logical_and.reduce([getattr(self, name) for name in REASONS])[()]
 
-    def broken(self):
+    def broken(self) -> list[str]:
         """Sentences of the assumptions that fail anywhere."""
         return [sentence for name, sentence in REASONS.items() if not np.all(getattr(self, name))]
 
 
 def validity(
-    density, ion_mass, speed, voltage, length=np.inf, altitude=500e3, wire_radius=1e-3, ion_temperature=1000.0
+    density: npt.ArrayLike,
+    ion_mass: npt.ArrayLike,
+    speed: npt.ArrayLike,
+    voltage: npt.ArrayLike,
+    length: npt.ArrayLike = np.inf,
+    altitude: npt.ArrayLike = 500e3,
+    wire_radius: npt.ArrayLike = 1e-3,
+    ion_temperature: npt.ArrayLike = 1000.0,
 ) -> Validity:
     """Which assumptions of the force law hold; arguments as in `force_per_length`, broadcast.
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 
-def as_rows(*vectors):
+def as_rows(*vectors: npt.ArrayLike) -> tuple[list[np.ndarray], tuple[int, ...]]:
     """Broadcast vectors against each other. (..., 3) each -> list of C-contiguous (n, 3) float64, and the common
     shape."""
     arrays = np.broadcast_arrays(*(np.asarray(vector, dtype=float) for vector in vectors))

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.compiled import compiled, inlined
 from sailviz.constants import AU, GRAVITY_AT_1_AU, RADIATION_PRESSURE
@@ -27,7 +28,7 @@ class Film:
     efficiency: float = 1.0
 
     @classmethod
-    def from_optics(cls, cr, cs, Bf, Bb, ef, eb) -> Film:
+    def from_optics(cls, cr: float, cs: float, Bf: float, Bb: float, ef: float, eb: float) -> Film:
         """Film from optical properties: reflectivity cr, specular share cs, non-Lambertian coefficients Bf and Bb,
         emissivities ef and eb of front and back. (3.18)-(3.20)"""
         emission = 0.0 if ef + eb == 0 else (1 - cr) * (ef * Bf - eb * Bb) / (ef + eb)
@@ -41,7 +42,9 @@ class Film:
         """b1 + b2 + b3, 1 for an ideal film."""
         return self.b1 + self.b2 + self.b3
 
-    def characteristic_acceleration(self, *, lightness=None, area=None, mass=None) -> float:
+    def characteristic_acceleration(
+        self, *, lightness: float | None = None, area: float | None = None, mass: float | None = None
+    ) -> float:
         """a_c in m/s2 at 1 au, facing the Sun, from the lightness number or from area m2 and mass kg.
 
         (3.3), (3.5), (3.13), (3.22). For an imperfect film of given efficiency the lightness number is that of the
@@ -49,13 +52,15 @@ class Film:
         """
         if lightness is not None:
             return self.efficiency * lightness * GRAVITY_AT_1_AU
+        if area is None or mass is None:
+            raise TypeError("a characteristic acceleration takes a lightness number, or an area and a mass")
         return self.efficiency * 2 * RADIATION_PRESSURE * (area / mass) * self.total
 
-    def lightness(self, characteristic_acceleration) -> float:
+    def lightness(self, characteristic_acceleration: float) -> float:
         """Lightness number beta of a_c in m/s2: (3.3), (3.13), (3.22)."""
         return characteristic_acceleration / (self.efficiency * GRAVITY_AT_1_AU)
 
-    def components(self, pitch):
+    def components(self, pitch: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """Radial and transverse force factors at a pitch in rad: a_r = a_c (r_E/r)^2 k_r, a_t = a_c (r_E/r)^2 k_t.
 
         k_r = (b1 c + b2 c^3 + b3 c^2) / total, k_t = (b2 c^2 s + b3 c s) / total: (3.21) resolved along r_hat and
@@ -110,7 +115,9 @@ def _accelerations(position, normal, strength, b1, b2, b3):
     return out
 
 
-def acceleration(position, normal, characteristic_acceleration, film: Film | str = "ideal"):
+def acceleration(
+    position: npt.ArrayLike, normal: npt.ArrayLike, characteristic_acceleration: float, film: Film | str = "ideal"
+) -> np.ndarray:
     """Acceleration of a solar sail, m/s2, (3,) or (n, 3) as the input.
 
     position : (..., 3) m from the Sun. normal : (..., 3) unit vector away from the Sun; a sail turned backwards

@@ -6,6 +6,7 @@ Source: thesis, (2.3): m_dot = -m a / (g0 Isp).
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.compiled import inlined
 from sailviz.constants import STANDARD_GRAVITY
@@ -19,7 +20,8 @@ def thruster_force(dx, dy, dz, m, size, is_force, inverse_exhaust):
     return a * dx, a * dy, a * dz, -m * a * inverse_exhaust  # (2.3)
 
 
-def propellant(delta_v, specific_impulse, initial_mass):
+def propellant(delta_v: npt.ArrayLike, specific_impulse: npt.ArrayLike, initial_mass: npt.ArrayLike) -> np.ndarray:
     """Propellant in kg for a velocity change in m/s at a specific impulse in s: the rocket equation, (2.3)
     integrated."""
-    return initial_mass * -np.expm1(-np.asarray(delta_v, dtype=float) / (specific_impulse * STANDARD_GRAVITY))
+    exhaust_speed = np.multiply(specific_impulse, STANDARD_GRAVITY)
+    return np.multiply(initial_mass, -np.expm1(-np.divide(delta_v, exhaust_speed)))

@@ -29,20 +29,20 @@ SIZE = 12
 
 
 def row(
-    kind="constant",
+    kind: str = "constant",
     *,
-    nominal_voltage=20e3,
-    maximum_voltage=40e3,
-    minimum_voltage=0.0,
-    wind_potential=WIND_POTENTIAL,
-    reference_pressure=WIND_PRESSURE,
-    interval=None,
-    dead_band=0.0,
-    position_gain=0.0,
-    speed_gain=0.0,
-    mu=MU_SUN,
-    power=0.0,
-):
+    nominal_voltage: float = 20e3,
+    maximum_voltage: float = 40e3,
+    minimum_voltage: float = 0.0,
+    wind_potential: float = WIND_POTENTIAL,
+    reference_pressure: float = WIND_PRESSURE,
+    interval: float | None = None,
+    dead_band: float = 0.0,
+    position_gain: float = 0.0,
+    speed_gain: float = 0.0,
+    mu: float = MU_SUN,
+    power: float = 0.0,
+) -> np.ndarray:
     """The parameter row (SIZE,) of a law: "constant", "pressure", "distance" or "constant-power".
 
     Voltages and dead_band V; reference_pressure Pa, where the nominal voltage gives the nominal thrust; interval s

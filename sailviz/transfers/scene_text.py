@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterable
 
 import numpy as np
@@ -31,11 +32,12 @@ def solved(flight: Flight) -> replay.Solved:
     ValueError where no flight was found."""
     if not flight.feasible:
         raise ValueError(f"there is no flight to write down: {flight.reason}")
-    if isinstance(flight, Transfer):
-        start, radius = flight.start, flight.initial_radius
-        return replay.from_planar(start, radius, flight.time, flight.device, flight.characteristic_acceleration)
-    parts = (flight.position, flight.velocity, flight.costates, flight.time)
-    return replay.Solved(*parts, flight.device, flight.characteristic_acceleration)
+    device, a_c = flight.device, flight.characteristic_acceleration
+    if not isinstance(flight, Transfer):
+        return replay.Solved(flight.position, flight.velocity, flight.costates, flight.time, device, a_c)
+    if flight.start is None:
+        raise ValueError("there is no flight to write down: it has no start")
+    return replay.from_planar(flight.start, flight.initial_radius, flight.time, device, a_c)
 
 
 def path_of(flight: Flight, samples: int = 1000) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -148,8 +150,8 @@ def _start(flight: Flight, it: replay.Solved, circular: bool) -> list[str]:
     angles = {name: np.degrees(getattr(e, name)) for name in ("inclination", "raan", "argument", "true_anomaly")}
     return [
         'kind = "elements"',
-        f"semi_major_axis_au = {_number(e.semi_major_axis / AU)}",
-        f"eccentricity = {_number(e.eccentricity)}",
+        f"semi_major_axis_au = {_number(float(e.semi_major_axis) / AU)}",
+        f"eccentricity = {_number(float(e.eccentricity))}",
         *(f"{name}_deg = {_number(value)}" for name, value in angles.items()),
     ]
 
@@ -182,19 +184,20 @@ def _steering_table(it: replay.Solved) -> list[str]:
 
 def _expectations(reached: Elements, position: np.ndarray, within: float, met: bool) -> list[str]:
     """What a flight's end must be: the elements that the optimisation aimed at, or the place of the planet."""
-    wanted = {
-        "semi_major_axis_au": (reached.semi_major_axis / AU, within),
+    wanted: dict[str, tuple[float, float]] = {
+        "semi_major_axis_au": (float(reached.semi_major_axis) / AU, within),
         "eccentricity": (float(reached.eccentricity), within),
     }
-    tilt = float(reached.inclination)
+    tilt, node = float(reached.inclination), float(reached.raan)
     if tilt > 1e-9:
-        wanted["inclination_deg"] = (np.degrees(tilt), np.degrees(within))
-    if tilt > LEAST_TILT and abs(np.sin(reached.raan / 2)) > 1e-6:  # a node at 0 would be measured as 0 or as 360
-        wanted["raan_deg"] = (np.degrees(reached.raan), np.degrees(within) / np.sin(tilt))
+        wanted["inclination_deg"] = (math.degrees(tilt), math.degrees(within))
+    if tilt > LEAST_TILT and abs(math.sin(node / 2)) > 1e-6:  # a node at 0 would be measured as 0 or as 360
+        wanted["raan_deg"] = (math.degrees(node), math.degrees(within) / math.sin(tilt))
     if met:
-        longitude = np.unwrap(np.arctan2(position[:, 1], position[:, 0]))
-        wanted["longitude_deg"] = (np.degrees(longitude[-1]), np.degrees(within))
-        wanted["radius_au"] = (np.linalg.norm(position[-1]) / AU, within)
+        x, y, _ = position.T
+        longitude = np.unwrap(np.arctan2(y, x))
+        wanted["longitude_deg"] = (math.degrees(longitude[-1]), math.degrees(within))
+        wanted["radius_au"] = (float(np.linalg.norm(position[-1])) / AU, within)
     lines = []
     for quantity, (value, tolerance) in wanted.items():
         if quantity == "eccentricity" and value < 0.1 * tolerance:

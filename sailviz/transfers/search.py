@@ -18,16 +18,23 @@ import numpy.typing as npt
 from sailviz import ephemeris
 from sailviz.constants import AU
 from sailviz.design.minimum_time.circles import circle_to_circle
-from sailviz.design.minimum_time.orbits import OrbitTransfer, orbit_to_orbit
+from sailviz.design.minimum_time.orbits import STARTS, OrbitTransfer, orbit_to_orbit
 from sailviz.design.minimum_time.planar_transfer import Transfer
-from sailviz.design.minimum_time.planet_rendezvous import Date, Rendezvous, rendezvous
+from sailviz.design.minimum_time.planet_rendezvous import DATES, Date, Rendezvous, rendezvous
 from sailviz.elements import Elements
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.words import length, nearest
 
 # Osculating elements of 2020-01-01 (TDB), ecliptic of J2000: JPL Horizons, solution JPL#48
-CERES = Elements(2.769289292 * AU, 0.07687465, *np.radians([10.59127768, 80.30119019, 73.80896809]), 0.0)
+CERES = Elements(
+    semi_major_axis=2.769289292 * AU,
+    eccentricity=0.07687465,
+    inclination=np.radians(10.59127768),
+    raan=np.radians(80.30119019),
+    argument=np.radians(73.80896809),
+    true_anomaly=0.0,
+)
 PLACES = (*(name.lower() for name in ephemeris.PLANETS), "ceres")
 SAILS = (*FILMS, *ELECTRIC_SAILS)
 SAME_CIRCLE = 1e-4  # relative difference of two radii
@@ -44,15 +51,26 @@ class Place:
     circle: bool = False
 
     @property
-    def table(self) -> dict:
+    def radius(self) -> float:
+        """Mean distance from the Sun, m."""
+        return float(self.orbit.semi_major_axis)
+
+    @property
+    def table(self) -> dict[str, str | float]:
         """The orbit as a scene's [target]."""
         e = self.orbit
-        named = {"name": f"orbit of {self.name}" if self.name[0].isalpha() else f"circle of {self.name}"}
-        tilt = {"inclination_deg": np.degrees(e.inclination), "raan_deg": np.degrees(e.raan)} if e.inclination else {}
+        found: dict[str, str | float] = {
+            "name": f"orbit of {self.name}" if self.name[0].isalpha() else f"circle of {self.name}"
+        }
         if e.eccentricity == 0:
-            return {**named, "radius_au": e.semi_major_axis / AU, **tilt}
-        shape = {"semi_major_axis_au": e.semi_major_axis / AU, "eccentricity": e.eccentricity}
-        return {**named, **shape, **tilt, "argument_deg": np.degrees(e.argument)}
+            found["radius_au"] = self.radius / AU
+        else:
+            found |= {"semi_major_axis_au": self.radius / AU, "eccentricity": float(e.eccentricity)}
+        if e.inclination:
+            found |= {"inclination_deg": float(np.degrees(e.inclination)), "raan_deg": float(np.degrees(e.raan))}
+        if e.eccentricity != 0:
+            found["argument_deg"] = float(np.degrees(e.argument))
+        return found
 
 
 @dataclass(frozen=True)
@@ -111,15 +129,14 @@ def find(
         return _between_planets(begin, end, device, a_c, departure, dates, progress)
     if orbits or (end.circle and end.orbit.inclination):
         if not orbits:
-            begin = circle(begin.orbit.semi_major_axis, name=begin.name)
-        more = {} if starts is None else {"starts": starts}
-        found = orbit_to_orbit(begin.orbit, end.orbit, device, a_c, progress=progress, **more)
+            begin = circle(begin.radius, name=begin.name)
+        count = STARTS if starts is None else starts
+        found = orbit_to_orbit(begin.orbit, end.orbit, device, a_c, starts=count, progress=progress)
         return Solution("orbits", begin, end, found)
-    begin, end = (circle(x.orbit.semi_major_axis, name=x.name) for x in (begin, end))
-    r0, r1 = begin.orbit.semi_major_axis, end.orbit.semi_major_axis
-    if abs(r1 / r0 - 1) < SAME_CIRCLE:
+    begin, end = (circle(x.radius, name=x.name) for x in (begin, end))
+    if abs(end.radius / begin.radius - 1) < SAME_CIRCLE:
         raise ValueError(f"{end.name} is where {begin.name} is: between the two circles there is nothing to fly")
-    return Solution("circles", begin, end, circle_to_circle(r0, r1, device, a_c, progress=progress))
+    return Solution("circles", begin, end, circle_to_circle(begin.radius, end.radius, device, a_c, progress=progress))
 
 
 def _between_planets(
@@ -134,7 +151,6 @@ def _between_planets(
     for end in (origin, target):
         if end.circle or end.name not in ephemeris.PLANETS:
             raise ValueError(f"a date needs planets whose places are known, and {end.name} is none of them")
-    more = {} if dates is None else {"dates": dates}
     try:
         found = rendezvous(
             target.name,
@@ -142,8 +158,8 @@ def _between_planets(
             device,
             characteristic_acceleration,
             origin=origin.name,
+            dates=DATES if dates is None else dates,
             progress=progress,
-            **more,
         )
     except ValueError as error:
         if "datetime" in str(error).lower():

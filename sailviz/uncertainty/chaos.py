@@ -12,10 +12,12 @@ the way see `covariance` or draw them.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.environment.solar_wind.laws import Gamma
 
@@ -57,13 +59,13 @@ class Expansion:
         spread = self.standard_deviation
         return np.abs(self.coefficients[-1]) / np.where(spread > 0, spread, 1.0)
 
-    def at(self, pressure) -> np.ndarray:
+    def at(self, pressure: npt.ArrayLike) -> np.ndarray:
         """Value of the series (m, ...) at pressures (m,) Pa."""
         x = np.asarray(pressure, dtype=float) / self.law.scale
         table = _polynomials(self.law.shape, self.basis, self.order, x)
         return np.tensordot(table, self.coefficients, axes=(0, 0))
 
-    def percentile(self, p) -> np.ndarray:
+    def percentile(self, p: npt.ArrayLike) -> np.ndarray:
         """The value that p percent of the flights stay below: (...), or (m, ...) for p (m,).
 
         From the series at 20 000 pressures of equal probability: no random numbers, the same every time.
@@ -73,21 +75,25 @@ class Expansion:
         pressures = self.law.from_normal(ndtri((np.arange(SAMPLES) + 0.5) / SAMPLES))
         table = _polynomials(self.law.shape, self.basis, self.order, pressures / self.law.scale).T
         flat = self.coefficients.reshape(self.order + 1, -1)
+        levels = np.asarray(p, dtype=float)
         step = max(1, 2**24 // SAMPLES)  # outputs at a time, 130 MB
         parts = [
-            np.percentile(table @ flat[:, first : first + step], p, axis=0) for first in range(0, flat.shape[1], step)
+            np.percentile(table @ flat[:, first : first + step], levels, axis=0)
+            for first in range(0, flat.shape[1], step)
         ]
         return np.concatenate(parts, axis=-1).reshape(np.shape(p) + self.coefficients.shape[1:])[()]
 
 
-def nodes(shape, scale, count, basis="root"):
+def nodes(shape: float, scale: float, count: int, basis: str = "root") -> tuple[np.ndarray, np.ndarray]:
     """Pressures (count,) Pa, rising, and weights (count,), sum 1, of the Gauss rule of a basis under a gamma law."""
     a, b = _recurrence(shape, basis, count)
     x, vectors = np.linalg.eigh(np.diag(a[:count]) + np.diag(b[1:count], 1) + np.diag(b[1:count], -1))  # Golub-Welsch
     return scale * (x * x if basis == "root" else x), vectors[0] ** 2
 
 
-def expand(function, shape, scale, order, basis="root") -> Expansion:
+def expand(
+    function: Callable[[np.ndarray], npt.ArrayLike], shape: float, scale: float, order: int, basis: str = "root"
+) -> Expansion:
     """Expansion of a function of a gamma-distributed pressure to an order, from order + 1 evaluations.
 
     function : pressures (order + 1,) Pa -> values (order + 1, ...), any number of outputs; it is called once.
@@ -95,8 +101,13 @@ def expand(function, shape, scale, order, basis="root") -> Expansion:
     finite.
     """
     _check(shape, scale, order, basis)
+    pressures, _ = nodes(shape, scale, order + 1, basis)
+    return _expansion(shape, scale, order, basis, np.asarray(function(pressures), dtype=float))
+
+
+def _expansion(shape: float, scale: float, order: int, basis: str, values: np.ndarray) -> Expansion:
+    """The expansion from values (order + 1, ...) at the nodes."""
     pressures, weights = nodes(shape, scale, order + 1, basis)
-    values = np.asarray(function(pressures), dtype=float)
     if values.shape[:1] != pressures.shape:
         raise ValueError(f"the function made {values.shape} of {len(pressures)} pressures; one row for each is needed")
     lost = ~np.isfinite(values).reshape(len(values), -1).all(axis=1)
@@ -116,28 +127,33 @@ class Convergence:
     mean: np.ndarray
     standard_deviation: np.ndarray
 
-    def error(self, standard_deviation=None) -> np.ndarray:
+    def error(self, standard_deviation: npt.ArrayLike | None = None) -> np.ndarray:
         """Relative error of the standard deviation (m, ...) against a better one, or (m - 1, ...) against the last."""
         if standard_deviation is not None:
             return np.abs(self.standard_deviation / standard_deviation - 1)
         return np.abs(self.standard_deviation[:-1] / self.standard_deviation[-1] - 1)
 
 
-def convergence(function, shape, scale, orders=(1, 2, 3, 5, 8, 12), basis="root") -> Convergence:
+def convergence(
+    function: Callable[[np.ndarray], npt.ArrayLike],
+    shape: float,
+    scale: float,
+    orders: Sequence[int] = (1, 2, 3, 5, 8, 12),
+    basis: str = "root",
+) -> Convergence:
     """The same expansion at several orders, rising; arguments as of `expand`. All nodes are evaluated in one call."""
-    orders = np.array(sorted(set(orders)), dtype=int)
-    for order in orders:
-        _check(shape, scale, int(order), basis)
-    places = np.cumsum([0, *(orders + 1)])
-    pressures = np.concatenate([nodes(shape, scale, order + 1, basis)[0] for order in orders])
+    rising = sorted({int(order) for order in orders})
+    for order in rising:
+        _check(shape, scale, order, basis)
+    places = np.cumsum([0, *(order + 1 for order in rising)])
+    pressures = np.concatenate([nodes(shape, scale, order + 1, basis)[0] for order in rising])
     values = np.asarray(function(pressures), dtype=float)
     parts = [
-        expand(lambda p, a=a, b=b: values[a:b], shape, scale, int(order), basis)
-        for order, a, b in zip(orders, places[:-1], places[1:], strict=True)
+        _expansion(shape, scale, order, basis, values[begin:end])
+        for order, begin, end in zip(rising, places[:-1], places[1:], strict=True)
     ]
-    return Convergence(
-        basis, orders, np.array([part.mean for part in parts]), np.array([part.standard_deviation for part in parts])
-    )
+    mean, deviation = np.array([part.mean for part in parts]), np.array([part.standard_deviation for part in parts])
+    return Convergence(basis, np.array(rising), mean, deviation)
 
 
 def _check(shape, scale, order, basis):

@@ -1,6 +1,6 @@
 """What voltage control and electrochromic area can hold, in closed form, and the power that an electron gun takes.
 
-The compiled laws that a flight uses are in `sailviz.propagate.control`. The thesis' own formulae (7.3) could not be
+The compiled laws that a flight uses are in `propulsion.voltage_control`. The thesis' own formulae (7.3) could not be
 read; all here is re-derived.
 """
 
@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.constants import ELEMENTARY_CHARGE, MASS_ELECTRON, WIND_POTENTIAL
 
@@ -29,7 +30,12 @@ class Saturation:
 
 
 def saturation(
-    shape, scale, nominal_voltage, maximum_voltage, wind_potential=WIND_POTENTIAL, reference_pressure=None
+    shape: npt.ArrayLike,
+    scale: npt.ArrayLike,
+    nominal_voltage: npt.ArrayLike,
+    maximum_voltage: npt.ArrayLike,
+    wind_potential: npt.ArrayLike = WIND_POTENTIAL,
+    reference_pressure: npt.ArrayLike | None = None,
 ) -> Saturation:
     """Statistics of V = Vw + (Vn - Vw) sqrt(p_ref / p), at most V_max, and of the thrust factor it leaves.
 
@@ -67,36 +73,41 @@ def saturation(
     return Saturation(*(part[()] for part in np.broadcast_arrays(*parts)))
 
 
-def gun_current_per_length(voltage, density, wire_radius):
+def gun_current_per_length(voltage: npt.ArrayLike, density: npt.ArrayLike, wire_radius: npt.ArrayLike) -> np.ndarray:
     """Electrons that a thin wire collects (orbital motion limited), A/m: 2 r_w e n sqrt(2 e V / m_e).
 
     voltage V, density of the wind's electrons 1/m3, wire_radius m; broadcast. Several wires side by side collect their
     sum.
     """
     speed = np.sqrt(2 * ELEMENTARY_CHARGE * np.asarray(voltage, dtype=float) / MASS_ELECTRON)
-    return 2 * wire_radius * ELEMENTARY_CHARGE * density * speed
+    width, density = 2 * np.asarray(wire_radius, dtype=float), np.asarray(density, dtype=float)
+    return width * ELEMENTARY_CHARGE * density * speed
 
 
-def gun_power(voltage, density, wire_radius, length):
+def gun_power(
+    voltage: npt.ArrayLike, density: npt.ArrayLike, wire_radius: npt.ArrayLike, length: npt.ArrayLike
+) -> np.ndarray:
     """Power, W, of the electron gun that keeps tethers of a total wire length, m, at a voltage: V I = K n V^1.5."""
-    return voltage * length * gun_current_per_length(voltage, density, wire_radius)
+    return np.multiply(voltage, length) * gun_current_per_length(voltage, density, wire_radius)
 
 
-def gun_strength(power, wire_radius, length):
-    """power / K, V^1.5/m3: the place POWER of a voltage law's row, `propagate.control.row(power=...)`. power W.
+def gun_strength(power: npt.ArrayLike, wire_radius: npt.ArrayLike, length: npt.ArrayLike) -> np.ndarray:
+    """power / K, V^1.5/m3: POWER in a row of `propulsion.voltage_control`. power W.
 
     The gun reaches V_P = (power / (K n))^(2/3), the same at every distance from the Sun when panels feed it, since
     density and power fall alike.
     """
-    return power / gun_power(1.0, 1.0, wire_radius, length)
+    return np.asarray(power, dtype=float) / gun_power(1.0, 1.0, wire_radius, length)
 
 
-def largest_voltage(power, density, wire_radius, length):
+def largest_voltage(
+    power: npt.ArrayLike, density: npt.ArrayLike, wire_radius: npt.ArrayLike, length: npt.ArrayLike
+) -> np.ndarray:
     """Voltage, V, at which the gun's power, W, is spent; other arguments as of `gun_power`; broadcast."""
     return (gun_strength(power, wire_radius, length) / np.asarray(density, dtype=float)) ** (2 / 3)
 
 
-def electrochromic_fraction(smallest, largest):
+def electrochromic_fraction(smallest: npt.ArrayLike, largest: npt.ArrayLike) -> np.ndarray:
     """Share of a Sun-facing sail's area that must be able to turn from mirror to black so that irradiances between
     smallest and largest (one unit) all push like the smallest: 2 (1 - S_min / S_max)."""
     smallest, largest = np.asarray(smallest, dtype=float), np.asarray(largest, dtype=float)
@@ -105,12 +116,13 @@ def electrochromic_fraction(smallest, largest):
     return 2 * (1 - smallest / largest)
 
 
-def electrochromic_state(irradiance, fraction, smallest):
+def electrochromic_state(irradiance: npt.ArrayLike, fraction: npt.ArrayLike, smallest: npt.ArrayLike) -> np.ndarray:
     """How reflective the electrochromic area is, 0 black to 1 mirror, to hold the thrust at that of the smallest
     irradiance: s = 1 - (2 / f) (1 - S_min / S), bounded. A flight that uses it takes S_min as its S0."""
-    return np.clip(1 - 2 / fraction * (1 - smallest / np.asarray(irradiance, dtype=float)), 0.0, 1.0)
+    missing = 1 - np.divide(smallest, irradiance)
+    return np.clip(1 - np.divide(2.0, fraction) * missing, 0.0, 1.0)
 
 
-def electrochromic_factor(state, fraction):
+def electrochromic_factor(state: npt.ArrayLike, fraction: npt.ArrayLike) -> np.ndarray:
     """Thrust over that of the all-mirror sail: 1 - (f / 2) (1 - s), as black takes half of a mirror's push."""
     return 1 - 0.5 * np.asarray(fraction) * (1 - np.asarray(state))

@@ -8,9 +8,11 @@ pressure is not the mean thrust. Re-derived.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,15 @@ class Covariance:
         return np.sqrt(np.diag(self.covariance))
 
 
-def linear(function, count, mean=1.0, deviation=0.3, correlation=None, step=1e-3, block=256) -> Covariance:
+def linear(
+    function: Callable[[np.ndarray], npt.ArrayLike],
+    count: int,
+    mean: npt.ArrayLike = 1.0,
+    deviation: npt.ArrayLike = 0.3,
+    correlation: npt.ArrayLike | None = None,
+    step: float = 1e-3,
+    block: int = 256,
+) -> Covariance:
     """Mean and covariance of a final state under `count` random thrust factors.
 
     function : factors (flights, count) -> final states (flights, m), any units; called with `block` flights at a time.

@@ -7,9 +7,11 @@ distribution, not flight by flight.
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.constants import AU, DAY, MU_SUN, YEAR
 from sailviz.environment.solar_wind.laws import Law
@@ -25,12 +27,13 @@ from sailviz.steering import attitude
 
 LEVELS = (5.0, 25.0, 50.0, 75.0, 95.0)
 _DEVIATES = np.linspace(-8.5, 8.5, 8193)  # a 53-bit number lies within +-8.3; 2e-7 of the pressure between entries
+_NORMAL = [2, 5]  # columns of a strength along h
 _FRAMES = {"orbital": ORBITAL, "meridian": MERIDIAN}
 
 
 @dataclass(frozen=True)
 class RandomWind:
-    """Pressure (or irradiance) drawn from a law of `sailviz.environment.wind_laws`, or anything with its `from_normal`.
+    """Pressure (or irradiance) drawn from a law of `environment.solar_wind.laws`, or anything with its `from_normal`.
 
     kind : "constant" over each flight; "redrawn", independent values every interval s; "correlated", p = F^-1(Phi(z))
     with z a stationary Ornstein-Uhlenbeck process, sampled every interval. yearly_deviation : of a slow factor
@@ -99,7 +102,7 @@ class Ensemble:
     flight_voltage: np.ndarray  # (flights,) V, mean over time
     flight_saturated: np.ndarray  # (flights,) share of time at the largest voltage
     reference_pressure: float  # Pa or W/m2, at which the thrust is nominal
-    control: np.ndarray  # the row of `sailviz.propagate.control` in SI
+    control: np.ndarray  # the row of `sailviz.propulsion.voltage_control` in SI
     seed: int
     error: float  # of integration: largest in position over distance among the first flights, by halving the steps
     resolution: np.ndarray  # (n, 6) how exactly percentiles are known: a bin's width, 0 for exact ones
@@ -118,7 +121,7 @@ class Ensemble:
         """(flights, 6) ends of the flights minus the end of the nominal one."""
         return self.end - self.nominal[-1]
 
-    def inertial(self, states) -> np.ndarray:
+    def inertial(self, states: npt.ArrayLike) -> np.ndarray:
         """Position m and velocity m/s (..., 6) in inertial axes from cylindrical states (..., 6)."""
         rho, angle, z, u, v, w = np.moveaxis(np.asarray(states), -1, 0)
         c, s = np.cos(angle), np.sin(angle)
@@ -211,39 +214,72 @@ def _cores():
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def _check(
+    position: np.ndarray,
+    velocity: np.ndarray,
+    duration: float,
+    flights: int,
+    seed: int,
+    frame: str,
+    control: np.ndarray,
+) -> None:
+    if position.shape != (3,) or velocity.shape != (3,):
+        raise ValueError("position and velocity are (3,) each")
+    if not (duration > 0 and np.isfinite(duration)) or flights < 1:
+        raise ValueError(f"{flights} flights of {duration:g} s are none")
+    if not 0 <= seed < 2**63:
+        raise ValueError(f"a seed is an integer from 0 to 2^63 - 1, not {seed}")
+    if frame not in _FRAMES:
+        raise ValueError(f"a frame is {' or '.join(_FRAMES)}, not {frame!r}")
+    if control[voltage_control.POWER] > 0 or control[voltage_control.KIND] == voltage_control.CONSTANT_POWER:
+        raise ValueError("a limit on the gun's power needs the density of the wind, which ensembles do not draw")
+
+
+def _outputs(outputs: int | npt.ArrayLike, duration: float, unit: float) -> int | np.ndarray:
+    """The number of outputs, or their times in a unit of s."""
+    if isinstance(outputs, int | np.integer):
+        if outputs < 2:
+            raise ValueError(f"at least 2 outputs are needed, not {outputs}")
+        return int(outputs)
+    times = np.asarray(outputs, dtype=float)
+    if (np.diff(times) <= 0).any() or times[0] < 0 or times[-1] > duration:
+        raise ValueError("output times must rise and lie between 0 and the duration")
+    return times / unit
+
+
 def fly_ensemble(
-    position,
-    velocity,
-    duration,
+    position: npt.ArrayLike,
+    velocity: npt.ArrayLike,
+    duration: float,
     *,
-    wind,
-    control,
-    flights=1000,
-    seed=0,
-    device="electric-sail",
-    characteristic_acceleration=1e-3,
-    model="final",
-    pitch=0.0,
-    clock=np.pi / 2,
-    table=None,
-    frame="orbital",
-    aim=None,
-    outputs=200,
-    keep=200,
-    levels=LEVELS,
-    threads=None,
-    mu=MU_SUN,
-    tolerance=1e-8,
-    progress=None,
+    wind: RandomWind | ReplayedWind | GivenWind,
+    control: np.ndarray,
+    flights: int = 1000,
+    seed: int = 0,
+    device: Film | str = "electric-sail",
+    characteristic_acceleration: float = 1e-3,
+    model: str = "final",
+    pitch: float = 0.0,
+    clock: float = np.pi / 2,
+    table: npt.ArrayLike | None = None,
+    frame: str = "orbital",
+    aim: tuple[float, float] | None = None,
+    outputs: int | npt.ArrayLike = 200,
+    keep: int = 200,
+    levels: Sequence[float] = LEVELS,
+    threads: int | None = None,
+    mu: float = MU_SUN,
+    tolerance: float = 1e-8,
+    progress: Callable[[int], None] | None = None,
 ) -> Ensemble:
     """Fly one craft many times around the Sun, each time through another wind.
 
     position (3,) m, velocity (3,) m/s at the start; duration s. wind : a RandomWind, ReplayedWind or GivenWind.
-    control : a row of `sailviz.propagate.control.row` with its reference pressure (laws that need the wind's density
-    are refused); the distance law leads back to the nominal flight, or to aim : (distance m, radial speed m/s) to hold.
+    control : a `propulsion.voltage_control.row` with its reference pressure (laws that need the wind's density are
+    refused); the distance law leads back to the nominal flight, or to aim : (distance m, radial speed m/s) to hold.
     For a solar sail only the row's reference counts, as the irradiance (W/m2) of nominal thrust, and the wind holds
     irradiances, to which the thrust is proportional. characteristic_acceleration m/s2 at 1 au. pitch and clock rad,
-    fixed; or table (k, 7) of `sailviz.steering.table`, its rows held from their times on
+    fixed; or table (k, 7) of `sailviz.steering.attitude.table`, its rows held from their times on
     (open loop in time). frame : "orbital" or "meridian", from which the clock counts.
     outputs : times (n,) s, or their number; they then lie where something changes anyway. keep : flights kept whole, at
     most 1024. levels : per cent. seed : an integer from 0 on. threads : None for one per usable core; they do not
@@ -255,28 +291,13 @@ def fly_ensemble(
     """
     position, velocity = np.asarray(position, dtype=float), np.asarray(velocity, dtype=float)
     control = np.asarray(control, dtype=float)
-    if position.shape != (3,) or velocity.shape != (3,):
-        raise ValueError("position and velocity are (3,) each")
-    if not (duration > 0 and np.isfinite(duration)) or flights < 1:
-        raise ValueError(f"{flights} flights of {duration:g} s are none")
-    if not 0 <= seed < 2**63:
-        raise ValueError(f"a seed is an integer from 0 to 2^63 - 1, not {seed}")
-    if frame not in _FRAMES:
-        raise ValueError(f"a frame is {' or '.join(_FRAMES)}, not {frame!r}")
-    if control[voltage_control.POWER] > 0 or control[voltage_control.KIND] == voltage_control.CONSTANT_POWER:
-        raise ValueError("a limit on the gun's power needs the density of the wind, which ensembles do not draw")
-    if np.ndim(outputs):
-        outputs = np.asarray(outputs, dtype=float)
-        if (np.diff(outputs) <= 0).any() or outputs[0] < 0 or outputs[-1] > duration:
-            raise ValueError("output times must rise and lie between 0 and the duration")
-    elif outputs < 2:
-        raise ValueError(f"at least 2 outputs are needed, not {outputs}")
+    _check(position, velocity, duration, flights, seed, frame, control)
     electric = device == "electric-sail"
     steering = np.array([[0.0, pitch, clock, 1.0]]) if table is None else np.asarray(table, dtype=float)[:, :4]
     strength = _strength(device, characteristic_acceleration, model, *steering.T[1:])
     made, interval, yearly = _wind(wind, duration, flights, seed, ROOT if electric else LINEAR)
 
-    across = np.abs(strength[:, [2, 5]]).max()
+    across = np.abs(strength[:, _NORMAL]).max()
     planar = frame == "orbital" and across <= 1e-15 * np.abs(strength).max()
     axes = _axes(position, velocity, planar)
     long, fast = AU, np.sqrt(mu / AU)
@@ -299,7 +320,7 @@ def fly_ensemble(
         frame=PLANE if planar else _FRAMES[frame],
         steering_times=steering[:, 0] / unit,
         strength=strength * long / fast**2,
-        outputs=outputs / unit if np.ndim(outputs) else outputs,
+        outputs=_outputs(outputs, duration, unit),
         redraw=interval / unit,
         update=np.inf if fixed else control[voltage_control.INTERVAL] / unit,
         new_level=yearly / unit,
@@ -310,17 +331,17 @@ def fly_ensemble(
     reference = np.zeros((len(times), SEEN))
     reference[:, :6] = track
     reference[:, 6:] = 1.0, control[voltage_control.NOMINAL], control[voltage_control.P_REF]
-    swarm = fly(plan, made, own, reference, flights, threads or _cores(), progress)
-    lost = np.flatnonzero(~np.isfinite(swarm.end).all(axis=1))
+    found = fly(plan, made, own, reference, flights, threads or _cores(), progress)
+    lost = np.flatnonzero(~np.isfinite(found.end).all(axis=1))
     if len(lost):
         raise ValueError(
             f"{len(lost)} flights came so close to the Sun that no step followed them, e.g. flight {lost[0]}"
         )
 
-    shift, cov, deviations = covariance(swarm.moments, flights)
+    shift, cov, deviations = covariance(found.moments, flights)
     mean = reference + shift
-    at = percentiles(swarm, levels)
-    kept = swarm.record[:keep]
+    at = percentiles(found, levels)
+    kept = found.record[:keep]
     units = np.array([long, 1.0, long, fast, fast, fast])
 
     def quantity(i):
@@ -336,23 +357,30 @@ def fly_ensemble(
         levels=np.asarray(levels, dtype=float),
         percentiles=at[..., :6] * units,
         kept=kept[..., :6] * units,
-        end=swarm.end * units,
+        end=found.end * units,
         factor=quantity(0),
         voltage=quantity(1),
         pressure=quantity(2),
-        saturated=swarm.moments[:, -1] / flights,
-        flight_factor=swarm.mean[:, 0],
-        flight_voltage=swarm.mean[:, 1],
-        flight_saturated=swarm.mean[:, 2],
+        saturated=found.moments[:, -1] / flights,
+        flight_factor=found.mean[:, 0],
+        flight_voltage=found.mean[:, 1],
+        flight_saturated=found.mean[:, 2],
         reference_pressure=float(control[voltage_control.P_REF]),
         control=control,
         seed=seed,
         error=error,
-        resolution=swarm.width[:, :6] * units,
+        resolution=found.width[:, :6] * units,
     )
 
 
-def fly_factors(factors, interval, position, velocity, duration, **options) -> np.ndarray:
+def fly_factors(
+    factors: npt.ArrayLike,
+    interval: float,
+    position: npt.ArrayLike,
+    velocity: npt.ArrayLike,
+    duration: float,
+    **options,
+) -> np.ndarray:
     """Ends (k, 6) of an electric sail's flights under given thrust factors (k, n) in steps of `interval` s: cylindrical
     states as in `Ensemble`. options : those of `fly_ensemble` but for wind and control."""
     factors = np.atleast_2d(np.asarray(factors, dtype=float))

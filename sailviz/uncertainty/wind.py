@@ -10,9 +10,11 @@ Pressures in Pa. Maximum likelihood; AIC and likelihood are quoted with p in nPa
 
 from __future__ import annotations
 
+from collections.abc import ItemsView, Iterable
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.environment.solar_wind.laws import (
     LAWS,
@@ -82,7 +84,7 @@ class Fits:
     def __len__(self):
         return len(self.laws)
 
-    def items(self):
+    def items(self) -> ItemsView[str, Fit]:
         return self.laws.items()
 
     @property
@@ -91,7 +93,7 @@ class Fits:
         return next(iter(self.laws))
 
 
-def fit(pressure, laws=tuple(LAWS)) -> Fits:
+def fit(pressure: npt.ArrayLike | Series, laws: Iterable[str] = tuple(LAWS)) -> Fits:
     """Laws fitted by maximum likelihood, all six or those named.
 
     pressure : (n,) Pa, NaN left out and counted, or a Series, of which only what was measured counts.
@@ -204,7 +206,18 @@ _FITTED = {
 }
 
 
-def generate(law, times, seed, kind="redrawn", *, flights=None, first_flight=0, yearly=None, factor=1.0, **options):
+def generate(
+    law: Law | Fit | str,
+    times: npt.ArrayLike,
+    seed: int,
+    kind: str = "redrawn",
+    *,
+    flights: int | None = None,
+    first_flight: int = 0,
+    yearly: float | None = None,
+    factor: float = 1.0,
+    **options,
+) -> np.ndarray:
     """Pressures (n,) Pa at 1 au, or (flights, n) of several flights, each value from its time on until the next.
 
     law : a Law, a Fit, or a law's word with its parameters among the options, generate("gamma", times, 1, shape=2.593,
@@ -230,9 +243,8 @@ def generate(law, times, seed, kind="redrawn", *, flights=None, first_flight=0, 
     return np.stack([one(first_flight + i) for i in range(flights)])
 
 
-def autocorrelation(x, lags):
+def autocorrelation(x: npt.ArrayLike, lags: npt.ArrayLike) -> np.ndarray:
     """Correlation of x (n,) with itself `lags` (m,) steps later; NaN are left out pair by pair."""
-    x = np.asarray(x, dtype=float)
-    x = x - np.nanmean(x)
-    variance = np.nanmean(x * x)
-    return np.array([np.nanmean(x[: len(x) - lag] * x[lag:]) for lag in np.asarray(lags, dtype=int)]) / variance
+    off = np.asarray(x, dtype=float) - np.nanmean(np.asarray(x, dtype=float))
+    variance = np.nanmean(off * off)
+    return np.array([np.nanmean(off[: len(off) - lag] * off[lag:]) for lag in np.asarray(lags, dtype=int)]) / variance

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
 from sailviz.design.asymptotic.legs import (
@@ -31,6 +32,7 @@ from sailviz.design.asymptotic.legs import (
     march_adaptive,
 )
 from sailviz.design.displaced.force_shape import force_shape
+from sailviz.propulsion.solar_sail import Film
 
 DOUBTFUL = 0.03  # relative error in r from which a result says that it should not be trusted
 ADAPTIVE_CAP = np.pi / 2  # rad; with legs near a revolution the step-doubling estimate aliases and under-reports
@@ -59,30 +61,30 @@ class Solution:
     request: tuple = ()  # how it was made, for the estimate of its error
 
     @property
-    def transverse_speed(self):
+    def transverse_speed(self) -> np.ndarray:
         return self.q[:, 2] + self.q[:, 0] * np.cos(self.theta) + self.q[:, 1] * np.sin(self.theta)
 
     @property
-    def radial_speed(self):
+    def radial_speed(self) -> np.ndarray:
         return self.q[:, 0] * np.sin(self.theta) - self.q[:, 1] * np.cos(self.theta)
 
     @property
-    def radius(self):
+    def radius(self) -> np.ndarray:
         """r (n,)."""
         return 1 / (self.q[:, 2] * self.transverse_speed)
 
     @property
-    def eccentricity(self):
+    def eccentricity(self) -> np.ndarray:
         """Osculating (n,)."""
         return np.hypot(self.q[:, 0], self.q[:, 1]) / self.q[:, 2]
 
     @property
-    def semi_major_axis(self):
+    def semi_major_axis(self) -> np.ndarray:
         """Osculating (n,)."""
         return 1 / (self.q[:, 2] ** 2 - self.q[:, 0] ** 2 - self.q[:, 1] ** 2)
 
     @property
-    def argument(self):
+    def argument(self) -> np.ndarray:
         """Osculating argument of periapsis (n,), rad."""
         return np.arctan2(self.q[:, 1], self.q[:, 0])
 
@@ -109,20 +111,26 @@ class Solution:
 
 
 # ---------------------------------------------------------------- states and thrust
-def from_elements(semi_major_axis=1.0, eccentricity=0.0, argument=0.0):
+def from_elements(semi_major_axis: float = 1.0, eccentricity: float = 0.0, argument: float = 0.0) -> np.ndarray:
     """q (3,) of an ellipse, canonical, argument of periapsis in rad."""
     q3 = 1 / np.sqrt(semi_major_axis * (1 - eccentricity**2))
     return np.array([eccentricity * q3 * np.cos(argument), eccentricity * q3 * np.sin(argument), q3])
 
 
-def from_state(radius, theta, radial_speed, transverse_speed):
+def from_state(radius: float, theta: float, radial_speed: float, transverse_speed: float) -> np.ndarray:
     """q (3,) of a plane state, canonical, theta rad."""
     q3 = 1 / (radius * transverse_speed)
     c, s, a = np.cos(theta), np.sin(theta), transverse_speed - q3
     return np.array([a * c + radial_speed * s, a * s - radial_speed * c, q3])
 
 
-def thrust(device, characteristic_acceleration, pitch, reference_radius=AU, mu=MU_SUN):
+def thrust(
+    device: Film | str,
+    characteristic_acceleration: float,
+    pitch: float,
+    reference_radius: float = AU,
+    mu: float = MU_SUN,
+) -> tuple[float, float, int]:
     """(radial, transverse, exponent) of a sail at a fixed pitch in rad (negative: against the motion).
 
     characteristic_acceleration : m/s2. reference_radius : m, the canonical unit of length. mu : m3/s2.
@@ -135,18 +143,18 @@ def thrust(device, characteristic_acceleration, pitch, reference_radius=AU, mu=M
 
 # ---------------------------------------------------------------- the solution
 def propagate(
-    q,
-    theta0,
-    theta,
-    radial,
-    transverse,
-    exponent,
-    leg=None,
-    scheme="plain",
+    q: npt.ArrayLike,
+    theta0: float,
+    theta: npt.ArrayLike,
+    radial: float,
+    transverse: float,
+    exponent: int,
+    leg: float | str | None = None,
+    scheme: str = "plain",
     *,
-    clock="quadrature",
-    tolerance=1e-5,
-    cap=ADAPTIVE_CAP,
+    clock: str | None = "quadrature",
+    tolerance: float = 1e-5,
+    cap: float = ADAPTIVE_CAP,
 ) -> Solution:
     """First-order trajectory from q (3,) at theta0 to the angles theta (n,) in rad, any order, any number of
     revolutions, either way.
@@ -161,7 +169,6 @@ def propagate(
     BreakdownError where q3 <= 0 or s <= 0 anywhere on the arc, or the frozen orbit is no ellipse; `.error_estimate`
     tells the rest. Without transverse thrust and n = 2 exact.
     """
-    adaptive = isinstance(leg, str)
     if exponent not in (0, 1, 2):
         raise ValueError(f"exponent is 0, 1 or 2, not {exponent!r}")
     if scheme not in SCHEMES:
@@ -170,7 +177,7 @@ def propagate(
         raise ValueError(f'clock is "quadrature", "closed" or None, not {clock!r}')
     if clock == "closed" and scheme != "plain":
         raise ValueError('the closed form of the time belongs to the scheme "plain"')
-    if (adaptive and leg != "adaptive") or (not adaptive and leg is not None and not leg > 0):
+    if leg != "adaptive" and (isinstance(leg, str) or (leg is not None and not leg > 0)):
         raise ValueError(f'leg is a positive angle, "adaptive" or None, not {leg!r}')
     law = (int(exponent), float(radial), float(transverse))
     q = np.ascontiguousarray(q, dtype=float)
@@ -179,10 +186,10 @@ def propagate(
         arc = max(np.max(np.abs(angles - theta0), initial=0.0), 1e-300)
         way = MIDPOINT if refined else SCHEMES[scheme]
         part = 0.5 if refined else 1.0
-        length = (arc if leg is None else leg) if not adaptive else cap
+        length = cap if isinstance(leg, str) else arc if leg is None else leg
 
         def run(side, out, time, mass):
-            if adaptive:
+            if isinstance(leg, str):
                 return march_adaptive(
                     q, theta0, side, tolerance * part, length * part, *law, CLOCKS[clock], way, out, time
                 )[:3]
@@ -194,7 +201,16 @@ def propagate(
     return Solution(**found, request=(make, float(theta0)))
 
 
-def constant_thrust(q, theta0, theta, radial, transverse, exhaust_speed, leg=np.pi / 2, scheme="midpoint") -> Solution:
+def constant_thrust(
+    q: npt.ArrayLike,
+    theta0: float,
+    theta: npt.ArrayLike,
+    radial: float,
+    transverse: float,
+    exhaust_speed: float,
+    leg: float = np.pi / 2,
+    scheme: str = "midpoint",
+) -> Solution:
     """As `propagate` for a thruster of constant thrust, whose acceleration grows as its mass falls: m = m0 - (F / c) t.
 
     radial, transverse : initial acceleration, canonical. exhaust_speed : c = g0 Isp, canonical. The acceleration of a
@@ -217,12 +233,12 @@ def constant_thrust(q, theta0, theta, radial, transverse, exhaust_speed, leg=np.
     return Solution(**found, request=(make, float(theta0)))
 
 
-def mass_at_constant_acceleration(time, acceleration, exhaust_speed):
+def mass_at_constant_acceleration(time: npt.ArrayLike, acceleration: float, exhaust_speed: float) -> np.ndarray:
     """m / m0 where the acceleration, not the thrust, is held: exp(-a t / c), with `time` of a Solution."""
     return np.exp(-np.asarray(time) * acceleration / exhaust_speed)
 
 
-def uniform(theta, radial, transverse, exponent) -> Solution:
+def uniform(theta: npt.ArrayLike, radial: float, transverse: float, exponent: int) -> Solution:
     """Long spirals from the unit circle at theta = 0: a two-scale form whose error stays O(thrust) over 1 / thrust.
     theta >= 0 (n,).
 

@@ -9,50 +9,56 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.constants import MU_EARTH, RADIUS_EARTH, STANDARD_GRAVITY
+from sailviz.design.decay.orbit import Force
 from sailviz.design.decay.quasi_circular import BRAKE_FLOOR, decay_time
 from sailviz.propulsion import plasma_brake
 
 
-def circular_speed(altitude):
+def circular_speed(altitude: npt.ArrayLike) -> np.ndarray:
     """m/s at an altitude in m, same shape."""
     return np.sqrt(MU_EARTH / (RADIUS_EARTH + np.asarray(altitude, dtype=float)))
 
 
-def perigee_lowering(altitude, perigee_altitude=60e3):
+def perigee_lowering(altitude: npt.ArrayLike, perigee_altitude: npt.ArrayLike = 60e3) -> np.ndarray:
     """Velocity in m/s of the one burn that lowers the perigee of a circular orbit; altitudes in m, arrays broadcast.
     With a perigee of 60 km or less the entry is on the next half revolution and where one wants it."""
     a, p = (RADIUS_EARTH + np.asarray(h, dtype=float) for h in (altitude, perigee_altitude))
     return np.sqrt(MU_EARTH / a) - np.sqrt(2 * MU_EARTH / a - 2 * MU_EARTH / (a + p))
 
 
-def spiral(altitude, end_altitude=300e3):
+def spiral(altitude: npt.ArrayLike, end_altitude: npt.ArrayLike = 300e3) -> np.ndarray:
     """Velocity in m/s of a low-thrust spiral down between circles, the difference of the circular speeds; altitudes in
     m, arrays broadcast; zero where the orbit is already below its end."""
     return np.maximum(circular_speed(end_altitude) - circular_speed(altitude), 0.0)
 
 
-def propellant(mass, delta_v, specific_impulse):
+def propellant(mass: npt.ArrayLike, delta_v: npt.ArrayLike, specific_impulse: npt.ArrayLike) -> np.ndarray:
     """Propellant in kg for a velocity in m/s: m (1 - exp(-dv / (Isp g0))), initial mass in kg, Isp in s; arrays
     broadcast."""
-    return mass * -np.expm1(-np.asarray(delta_v, dtype=float) / (specific_impulse * STANDARD_GRAVITY))
+    exhaust_speed = np.multiply(specific_impulse, STANDARD_GRAVITY)
+    return np.multiply(mass, -np.expm1(-np.divide(delta_v, exhaust_speed)))
 
 
-def thrust_time(mass, delta_v, specific_impulse, thrust):
+def thrust_time(
+    mass: npt.ArrayLike, delta_v: npt.ArrayLike, specific_impulse: npt.ArrayLike, thrust: npt.ArrayLike
+) -> np.ndarray:
     """Time in s that a thrust in N takes for it, propellant over mass flow; the other arguments as in `propellant`."""
-    return propellant(mass, delta_v, specific_impulse) * specific_impulse * STANDARD_GRAVITY / thrust
+    impulse = propellant(mass, delta_v, specific_impulse) * np.asarray(specific_impulse, dtype=float) * STANDARD_GRAVITY
+    return np.divide(impulse, thrust)
 
 
-def electric_power(thrust, specific_impulse, efficiency):
+def electric_power(thrust: npt.ArrayLike, specific_impulse: npt.ArrayLike, efficiency: npt.ArrayLike) -> np.ndarray:
     """Power in W of an electric thruster: T Isp g0 / (2 eta), N and s."""
-    return thrust * specific_impulse * STANDARD_GRAVITY / (2 * efficiency)
+    return np.multiply(thrust, specific_impulse) * STANDARD_GRAVITY / np.multiply(2.0, efficiency)
 
 
-def equivalent_specific_impulse(impulse, system_mass):
+def equivalent_specific_impulse(impulse: npt.ArrayLike, system_mass: npt.ArrayLike) -> np.ndarray:
     """Isp in s at which a thruster would spend the whole mass of the system, kg, on the impulse in N s that the brake
     gives; system_mass : tether, reel, tip mass and high-voltage unit."""
-    return impulse / (system_mass * STANDARD_GRAVITY)
+    return np.divide(impulse, np.multiply(system_mass, STANDARD_GRAVITY))
 
 
 @dataclass(frozen=True)
@@ -69,15 +75,28 @@ class Disposal:
     controlled: bool
 
 
-def chemical(mass, altitude, specific_impulse, perigee_altitude=60e3) -> Disposal:
+def chemical(
+    mass: npt.ArrayLike,
+    altitude: npt.ArrayLike,
+    specific_impulse: npt.ArrayLike,
+    perigee_altitude: npt.ArrayLike = 60e3,
+) -> Disposal:
     """One burn into the atmosphere; mass kg, altitudes m, specific impulse s (cold gas 70, monopropellant 220,
     bipropellant 300)."""
     dv = perigee_lowering(altitude, perigee_altitude)
-    half = np.pi * np.sqrt((RADIUS_EARTH + 0.5 * (np.asarray(altitude) + perigee_altitude)) ** 3 / MU_EARTH)
-    return Disposal(dv, propellant(mass, dv, specific_impulse), half, 0.0 * dv, specific_impulse, True)
+    isp = np.asarray(specific_impulse, dtype=float)[()]
+    half = np.pi * np.sqrt((RADIUS_EARTH + 0.5 * np.add(altitude, perigee_altitude)) ** 3 / MU_EARTH)
+    return Disposal(dv, propellant(mass, dv, specific_impulse), half, 0.0 * dv, isp, True)
 
 
-def electric(mass, altitude, specific_impulse, thrust, efficiency=0.5, end_altitude=300e3) -> Disposal:
+def electric(
+    mass: npt.ArrayLike,
+    altitude: npt.ArrayLike,
+    specific_impulse: npt.ArrayLike,
+    thrust: npt.ArrayLike,
+    efficiency: npt.ArrayLike = 0.5,
+    end_altitude: npt.ArrayLike = 300e3,
+) -> Disposal:
     """A spiral to an altitude from which drag does the rest within weeks; mass kg, altitudes m, specific impulse s,
     thrust N, efficiency from electric to jet power."""
     dv = spiral(altitude, end_altitude)
@@ -86,20 +105,20 @@ def electric(mass, altitude, specific_impulse, thrust, efficiency=0.5, end_altit
         propellant(mass, dv, specific_impulse),
         thrust_time(mass, dv, specific_impulse, thrust),
         electric_power(thrust, specific_impulse, efficiency) + 0.0 * dv,
-        specific_impulse,
+        np.asarray(specific_impulse, dtype=float)[()],
         False,
     )
 
 
 def brake(
-    mass,
-    length,
-    altitude,
-    force_profile,
-    system_mass,
-    wire_diameter=50e-6,
-    supply_efficiency=1.0,
-    end_altitude=300e3,
+    mass: npt.ArrayLike,
+    length: float,
+    altitude: npt.ArrayLike,
+    force_profile: Force | None,
+    system_mass: float,
+    wire_diameter: float = 50e-6,
+    supply_efficiency: float = 1.0,
+    end_altitude: float = 300e3,
     **options,
 ) -> Disposal:
     """A plasma brake from a circular orbit down to end_altitude.

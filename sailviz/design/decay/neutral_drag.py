@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.design.decay.orbit import BRAKE_FLOOR, craft_of, setting
+from sailviz.design.decay.orbit import BRAKE_FLOOR, Atmosphere, Force, craft_of, setting
 from sailviz.design.decay.profiles import LEVELS, POLAR, averaged_profile
 from sailviz.design.decay.quasi_circular import FINE, REENTRY, Descent
 from sailviz.environment import atmosphere, solar_level
@@ -12,7 +12,14 @@ from sailviz.environment import atmosphere, solar_level
 TOLERANCE = 1e-7  # relative, of the time
 
 
-def crossover_altitude(length, force_profile, drag_area, air, brake_floor=BRAKE_FLOOR, top=1500e3):
+def crossover_altitude(
+    length: float,
+    force_profile: Force | None,
+    drag_area: float,
+    air: Atmosphere | None,
+    brake_floor: float = BRAKE_FLOOR,
+    top: float = 1500e3,
+) -> float:
     """Altitude in m where the brake's force equals neutral drag: the brake leads above, the air below. Not a place of
     rest, both brake.
 
@@ -50,16 +57,16 @@ class _Levels:
 
 
 def cycle_descent(
-    mass,
-    start_altitude,
-    year,
+    mass: float,
+    start_altitude: float,
+    year: float,
     *,
-    drag_area,
-    length=0.0,
-    end_altitude=REENTRY,
-    inclination=POLAR,
-    f107=None,
-    brake_floor=BRAKE_FLOOR,
+    drag_area: float,
+    length: float = 0.0,
+    end_altitude: float = REENTRY,
+    inclination: float = POLAR,
+    f107: float | None = None,
+    brake_floor: float = BRAKE_FLOOR,
 ) -> Descent:
     """A descent through changing solar activity: F10.7 = 70 + 61.5 (1 - cos(2 pi (year - 2019.96) / 11)), as
     `solar_level.cycle`. A lifetime of decades at a constant level says little.
@@ -81,7 +88,7 @@ def cycle_descent(
     plasma = None
     if length > 0:
         tables = [averaged_profile(inclination, level) for level in LEVELS.values()]
-        at = tables[0].plasma.altitude
+        at = np.array(tables[0].knots)
         plasma = _Levels(list(LEVELS.values()), at, [table(at) for table in tables])
     cycle = solar_level.constant(f107) if f107 is not None else solar_level.cycle(year)
 

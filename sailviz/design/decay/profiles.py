@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.constants import ATOMIC_MASS, MU_EARTH, RADIUS_EARTH
 from sailviz.environment import ionosphere
@@ -40,7 +41,7 @@ class Plasma:
     voltage: float = 1000.0
     wire_radius: float = 1e-3
 
-    def force(self):
+    def force(self) -> np.ndarray:
         """Force per length at its altitudes, N/m, at circular speed."""
         speed = np.sqrt(MU_EARTH / (RADIUS_EARTH + self.altitude))
         return force_per_length(self.density, self.ion_mass, speed, self.voltage, self.wire_radius)
@@ -55,16 +56,16 @@ class ForceProfile:
     """
 
     label: str
-    law: Callable
-    knots: tuple = ()
+    law: Callable[[np.ndarray], np.ndarray]
+    knots: tuple[float, ...] = ()
     lowest: float = -np.inf
     highest: float = np.inf
     plasma: Plasma | None = None
 
-    def __call__(self, altitude):
+    def __call__(self, altitude: npt.ArrayLike) -> np.ndarray:
         return self.law(np.asarray(altitude, dtype=float))
 
-    def scaled(self, factor, label=None) -> ForceProfile:
+    def scaled(self, factor: float, label: str | None = None) -> ForceProfile:
         """The same profile times a factor."""
         return replace(self, label=label or f"{self.label}, times {factor:g}", law=lambda h: factor * self.law(h))
 
@@ -72,14 +73,14 @@ class ForceProfile:
         """The same profile without its limits: a table holds its end values there, a shape goes on."""
         return replace(self, lowest=-np.inf, highest=np.inf)
 
-    def with_density(self, factor) -> ForceProfile:
+    def with_density(self, factor: float) -> ForceProfile:
         """For a plasma density times `factor`: by the force law where the plasma is known, else factor^0.537."""
         label = f"{self.label}, density times {factor:g}"
         if self.plasma is None:
             return self.scaled(factor**DENSITY_EXPONENT, label)
         return self._rescaled(replace(self.plasma, density=factor * self.plasma.density), label)
 
-    def with_voltage(self, voltage, wire_radius=None) -> ForceProfile:
+    def with_voltage(self, voltage: float, wire_radius: float | None = None) -> ForceProfile:
         """For another voltage in V (absolute) and wire radius in m: f goes with sqrt(Vt) exp(-Vi / Vt), evaluated with
         the plasma behind the table; without one (V / 1 kV)^0.497, and the wire radius cannot change."""
         label = f"{self.label}, {voltage:g} V"
@@ -90,7 +91,9 @@ class ForceProfile:
         radius = self.plasma.wire_radius if wire_radius is None else wire_radius
         return self._rescaled(replace(self.plasma, voltage=voltage, wire_radius=radius), label)
 
-    def _rescaled(self, plasma, label):
+    def _rescaled(self, plasma: Plasma, label: str) -> ForceProfile:
+        if self.plasma is None:
+            raise ValueError(f"{self.label}: the plasma behind it is not known")
         ratio = np.log(plasma.force() / self.plasma.force())
         altitude = plasma.altitude
         return replace(
@@ -98,27 +101,29 @@ class ForceProfile:
         )
 
 
-def constant(force) -> ForceProfile:
+def constant(force: float) -> ForceProfile:
     """The same force per length, N/m, at every altitude."""
     return ForceProfile("constant force", lambda h: np.full_like(h, force))
 
 
-def exponential(f700, scale_height) -> ForceProfile:
+def exponential(f700: float, scale_height: float) -> ForceProfile:
     """f700 exp(-(h - 700 km) / H), f700 in N/m, H in m."""
     return ForceProfile("exponential", lambda h: f700 * np.exp((REFERENCE - h) / scale_height))
 
 
-def power_law(f700, exponent) -> ForceProfile:
+def power_law(f700: float, exponent: float) -> ForceProfile:
     """f700 (h / 700 km)^p, f700 in N/m."""
     return ForceProfile("power law", lambda h: f700 * (h / REFERENCE) ** exponent)
 
 
-def log_quadratic(q0, q1, q2) -> ForceProfile:
+def log_quadratic(q0: float, q1: float, q2: float) -> ForceProfile:
     """ln f = q0 + q1 x + q2 x^2 with f in N/m and x = h - 700 km in m: the analytical model that fits every level."""
     return ForceProfile("log-quadratic", lambda h: np.exp(q0 + (h - REFERENCE) * (q1 + (h - REFERENCE) * q2)))
 
 
-def tabulated(altitude, force, label="table", plasma=None) -> ForceProfile:
+def tabulated(
+    altitude: npt.ArrayLike, force: npt.ArrayLike, label: str = "table", plasma: Plasma | None = None
+) -> ForceProfile:
     """From forces per length in N/m at altitudes (k,) in m, rising: ln f linear between them, held outside."""
     altitude, force = np.asarray(altitude, dtype=float), np.asarray(force, dtype=float)
     if altitude.ndim != 1 or altitude.shape != force.shape or len(altitude) < 2 or np.any(np.diff(altitude) <= 0):
@@ -139,7 +144,7 @@ def _shipped_columns():
     return dict(zip(rows[0], np.array(rows[1:], dtype=float).T, strict=True))
 
 
-def shipped_profile(level="min2019", inclination=POLAR) -> ForceProfile:
+def shipped_profile(level: str = "min2019", inclination: float = POLAR) -> ForceProfile:
     """The shipped orbit average, 200-1500 km every 25 km. level : "min2019", "mid2014", "max2001". inclination : rad,
     within 2 deg of 97.8 or 51.6 deg or of their supplements, which cover the same latitudes.
 
@@ -169,7 +174,9 @@ def _panels(edges):
     return (middle[:, None] + half[:, None] * nodes).ravel(), (half[:, None] * weights).ravel() / (edges[-1] - edges[0])
 
 
-def averaged_profile(inclination, f107, voltage=1000.0, wire_radius=1e-3) -> ForceProfile:
+def averaged_profile(
+    inclination: float, f107: float, voltage: float = 1000.0, wire_radius: float = 1e-3
+) -> ForceProfile:
     """From the ionosphere table for any orbit, 200-1500 km every 25 km: the force, not the density, averaged over the
     latitudes of a circular orbit and over local time.
 
@@ -204,26 +211,36 @@ class Fit:
     largest relative error of the force at the altitudes it was fitted to."""
 
     profile: ForceProfile
-    coefficients: tuple
+    coefficients: tuple[float, ...]
     largest_error: float
 
 
-def fit(profile, shape="log-quadratic", lower=400e3, upper=1000e3, spacing=25e3) -> Fit:
+def fit(
+    profile: Callable[[np.ndarray], np.ndarray],
+    shape: str = "log-quadratic",
+    lower: float = 400e3,
+    upper: float = 1000e3,
+    spacing: float = 25e3,
+) -> Fit:
     """Least squares of ln f between two altitudes in m, every `spacing` m. shape : "exponential", "power" or
     "log-quadratic". Of the shipped profiles, 400-1000 km: the log-quadratic is within 2 to 6 %, the exponential within
     5 to 14 %, the power law within 7 to 26 %."""
     altitude = np.arange(lower, upper + spacing / 2, spacing)
     log = np.log(profile(altitude))
+    coefficients: tuple[float, ...]
     if shape == "exponential":
         slope, top = np.polyfit(altitude - REFERENCE, log, 1)
-        coefficients, make = (np.exp(top), -1 / slope), exponential
+        coefficients = float(np.exp(top)), float(-1 / slope)
+        made = exponential(*coefficients)
     elif shape == "power":
         slope, top = np.polyfit(np.log(altitude / REFERENCE), log, 1)
-        coefficients, make = (np.exp(top), slope), power_law
+        coefficients = float(np.exp(top)), float(slope)
+        made = power_law(*coefficients)
     elif shape == "log-quadratic":
-        coefficients, make = np.polyfit((altitude - REFERENCE) / 1e6, log, 2)[::-1] / [1, 1e6, 1e12], log_quadratic
+        q2, q1, q0 = np.polyfit((altitude - REFERENCE) / 1e6, log, 2)
+        coefficients = float(q0), float(q1 / 1e6), float(q2 / 1e12)
+        made = log_quadratic(*coefficients)
     else:
         raise ValueError(f'there is no shape {shape!r}, only "exponential", "power" and "log-quadratic"')
-    coefficients = tuple(float(c) for c in coefficients)
-    found = replace(make(*coefficients), lowest=lower, highest=upper)
+    found = replace(made, lowest=lower, highest=upper)
     return Fit(found, coefficients, float(np.max(np.abs(found(altitude) / np.exp(log) - 1))))

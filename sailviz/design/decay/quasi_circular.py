@@ -9,29 +9,30 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.constants import MU_EARTH, RADIUS_EARTH, YEAR
-from sailviz.design.decay.orbit import BRAKE_FLOOR, craft_of, setting
-from sailviz.design.decay.profiles import BAND, REFERENCE
+from sailviz.design.decay.orbit import BRAKE_FLOOR, Atmosphere, Force, craft_of, setting
+from sailviz.design.decay.profiles import BAND, REFERENCE, ForceProfile
 
 REENTRY = 120e3  # m, where a re-entry begins
 FINE = 2e3  # m, spacing of the altitudes of a Descent
 
 
 def decay_time(
-    mass,
-    length,
-    start_altitude,
-    end_altitude,
-    force_profile,
+    mass: npt.ArrayLike,
+    length: npt.ArrayLike,
+    start_altitude: npt.ArrayLike,
+    end_altitude: npt.ArrayLike,
+    force_profile: Force | None,
     *,
-    drag_area=0.0,
-    air=None,
-    brake_floor=BRAKE_FLOOR,
-    inclination=None,
-    mean_radius=False,
-    corotation=False,
-):
+    drag_area: npt.ArrayLike = 0.0,
+    air: Atmosphere | None = None,
+    brake_floor: float = BRAKE_FLOOR,
+    inclination: float | None = None,
+    mean_radius: bool = False,
+    corotation: bool = False,
+) -> np.ndarray:
     """Time in s to descend between two altitudes; scalars or arrays, broadcast.
 
     mass : kg. length : m of tether. start_altitude, end_altitude : m, mean semi-major axis less R_E.
@@ -54,7 +55,15 @@ def decay_time(
     return time[()]
 
 
-def exponential_decay_time(mass, length, start_altitude, end_altitude, f700, scale_height, exact=True):
+def exponential_decay_time(
+    mass: npt.ArrayLike,
+    length: npt.ArrayLike,
+    start_altitude: npt.ArrayLike,
+    end_altitude: npt.ArrayLike,
+    f700: npt.ArrayLike,
+    scale_height: npt.ArrayLike,
+    exact: bool = True,
+) -> np.ndarray:
     """Time in s to descend under f700 exp(-(h - 700 km) / H), f700 in N/m, H in m; scalars or arrays.
 
     exact : by Dawson's integral. Otherwise a^(3/2) is taken at the mean altitude: longer by up to 0.3 % over 100-200 km
@@ -85,42 +94,42 @@ class Descent:
     drag: np.ndarray
 
     @property
-    def duration(self):
+    def duration(self) -> float:
         """s, the last time."""
         return float(self.time[-1])
 
-    def altitude_at(self, times):
+    def altitude_at(self, times: npt.ArrayLike) -> np.ndarray:
         """Altitude in m at times in s, same shape; NaN before the start and after the end."""
         from scipy.interpolate import PchipInterpolator
 
         return PchipInterpolator(self.time, self.altitude, extrapolate=False)(np.asarray(times, dtype=float))
 
-    def time_above(self, altitude):
+    def time_above(self, altitude: npt.ArrayLike) -> np.ndarray:
         """Time in s spent above altitudes in m, same shape: all of it below the end, none above the start."""
         from scipy.interpolate import PchipInterpolator
 
         inside = np.clip(altitude, self.altitude[-1], self.altitude[0])
         return PchipInterpolator(self.altitude[::-1], self.time[::-1])(inside)
 
-    def area_time(self, area):
+    def area_time(self, area: npt.ArrayLike) -> np.ndarray:
         """Area-time product, m2 s: what a piece of debris can hit. area : m2, cross section of craft and tether (length
         times width, which for a tape or a multi-wire tether is its full width)."""
-        return area * self.duration
+        return np.multiply(area, self.duration)
 
 
 def descend(
-    mass,
-    length,
-    start_altitude,
-    end_altitude,
-    force_profile,
+    mass: float,
+    length: float,
+    start_altitude: float,
+    end_altitude: float,
+    force_profile: Force | None,
     *,
-    drag_area=0.0,
-    air=None,
-    brake_floor=BRAKE_FLOOR,
-    inclination=None,
-    mean_radius=False,
-    corotation=False,
+    drag_area: float = 0.0,
+    air: Atmosphere | None = None,
+    brake_floor: float = BRAKE_FLOOR,
+    inclination: float | None = None,
+    mean_radius: bool = False,
+    corotation: bool = False,
 ) -> Descent:
     """The whole descent of one craft; scalars as for `decay_time`, and its options."""
     given = setting(force_profile, drag_area, air, brake_floor, inclination, mean_radius, corotation)
@@ -130,7 +139,15 @@ def descend(
     return Descent(time, edges, craft.brake(edges), craft.drag(edges))
 
 
-def altitude_history(times, mass, length, start_altitude, end_altitude, force_profile, **options):
+def altitude_history(
+    times: npt.ArrayLike,
+    mass: float,
+    length: float,
+    start_altitude: float,
+    end_altitude: float,
+    force_profile: Force | None,
+    **options,
+) -> np.ndarray:
     """Altitude in m at times in s since the start, same shape, NaN outside the descent; the rest as `decay_time`. The
     analytic decay to draw beside a propagated one: compare it with the orbit mean of the semi-major axis less R_E."""
     return descend(mass, length, start_altitude, end_altitude, force_profile, **options).altitude_at(times)
@@ -144,12 +161,20 @@ class Band:
     time: np.ndarray
 
 
-def decay_band(mass, length, start_altitude, end_altitude, force_profile, factors=BAND, **options) -> Band:
+def decay_band(
+    mass: float,
+    length: float,
+    start_altitude: float,
+    end_altitude: float,
+    force_profile: ForceProfile,
+    factors: npt.ArrayLike = BAND,
+    **options,
+) -> Band:
     """Decay time of one craft with the plasma density halved, as modelled and doubled (or other factors): topside
     models differ by that and more, so a time without its band says too much. force_profile : a ForceProfile."""
     times = [
         decay_time(mass, length, start_altitude, end_altitude, force_profile.with_density(factor), **options)
-        for factor in factors
+        for factor in np.asarray(factors, dtype=float)
     ]
     return Band(np.array(factors, dtype=float), np.array(times))
 
@@ -163,7 +188,7 @@ class Compliance:
     within_5_years: np.ndarray
 
 
-def compliance(time) -> Compliance:
+def compliance(time: npt.ArrayLike) -> Compliance:
     """Whether an orbital lifetime in s after the end of the mission keeps the rules; scalars or arrays.
 
     25 years: IADC Space Debris Mitigation Guidelines, 5.3.2, and ISO 24113. 5 years: FCC 22-74 (Second Report and Order

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.propulsion import electric_sail
 from sailviz.propulsion.solar_sail import FILMS, Film
@@ -21,7 +22,7 @@ class ForceShape:
     film: Film | None
     exponent: int
 
-    def components(self, pitch):
+    def components(self, pitch: npt.ArrayLike) -> tuple[np.ndarray, np.ndarray]:
         """(k_r, k_t) at a pitch in rad; sqrt(k_r^2 + k_t^2) is 1 facing the Sun."""
         if self.film is not None:
             return self.film.components(pitch)
@@ -38,14 +39,14 @@ class ForceShape:
         """Tangent of the largest cone angle, exact for the electric sail: 1 / (2 sqrt 2)."""
         return 1 / (2 * np.sqrt(2)) if self.film is None else float(np.tan(self.cone_limit()))
 
-    def pitch(self, cone):
+    def pitch(self, cone: npt.ArrayLike) -> np.ndarray:
         """The smaller pitch that gives a cone angle >= 0, rad, same shape; NaN beyond the limit."""
         if self.film is None:
             return electric_sail.pitch_angle(cone)
         return _film_pitch(self.film, np.asarray(cone, dtype=float))
 
 
-def force_shape(device) -> ForceShape:
+def force_shape(device: Film | str) -> ForceShape:
     """ForceShape of "electric-sail", of a film's name, or of a Film. ValueError for anything else."""
     if isinstance(device, Film):
         return ForceShape(device, 2)

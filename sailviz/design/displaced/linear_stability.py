@@ -9,10 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.constants import AU
 from sailviz.design.displaced.force_shape import force_shape
 from sailviz.design.displaced.holding import attitude
+from sailviz.propulsion.solar_sail import Film
 
 CLOCKS = ("orbital", "meridian")
 
@@ -30,7 +32,13 @@ class Stability:
     reason: str = ""
 
 
-def stability(elevation, rate_ratio, device="electric-sail", clock="orbital", cone_limit=None) -> Stability:
+def stability(
+    elevation: npt.ArrayLike,
+    rate_ratio: npt.ArrayLike,
+    device: Film | str = "electric-sail",
+    clock: str = "orbital",
+    cone_limit: float | None = None,
+) -> Stability:
     """Linear stability of a circular displaced orbit whose pitch and clock angle stay as designed; broadcast.
 
     elevation : rad. rate_ratio : Omega / Omega_K. clock : "orbital" keeps the clock angle against the osculating
@@ -70,7 +78,7 @@ def stability(elevation, rate_ratio, device="electric-sail", clock="orbital", co
     return Stability(squared, stable[()], growth[()], feasible[()], reason)
 
 
-def smallest_stable_rate(elevation, clock="orbital"):
+def smallest_stable_rate(elevation: npt.ArrayLike, clock: str = "orbital") -> np.ndarray:
     """Rate ratio above which an electric sail's orbit is stable, over elevation in rad, same shape; it may be
     infeasible.
 
@@ -82,7 +90,7 @@ def smallest_stable_rate(elevation, clock="orbital"):
     return np.sqrt(1 / (2 * square) if clock == "orbital" else (3 - 2 * square) / (2 * square))
 
 
-def largest_stable_elevation(clock="orbital", cone_limit=None) -> tuple[float, float]:
+def largest_stable_elevation(clock: str = "orbital", cone_limit: float | None = None) -> tuple[float, float]:
     """(elevation rad, rate ratio) where the wedge of stable and feasible orbits of an electric sail closes.
 
     cone_limit : rad, the electric sail's own by default. Feasible is w <= T / (s c + T c^2), T = tan(cone_limit). Under

@@ -10,13 +10,17 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.constants import AU, MU_SUN
 from sailviz.design.displaced.force_shape import force_shape
 from sailviz.design.displaced.holding import Holding, attitude
+from sailviz.propulsion.solar_sail import Film
 
 
-def circular(radius, elevation, rate_ratio, device="electric-sail") -> Holding:
+def circular(
+    radius: npt.ArrayLike, elevation: npt.ArrayLike, rate_ratio: npt.ArrayLike, device: Film | str = "electric-sail"
+) -> Holding:
     """Requirements of a circular displaced orbit; scalars or arrays, broadcast.
 
     radius : m, distance from the Sun. elevation : rad over the ecliptic, negative below. rate_ratio : Omega / sqrt(mu /
@@ -54,7 +58,7 @@ def circular(radius, elevation, rate_ratio, device="electric-sail") -> Holding:
     return Holding(cone[()], pitch[()], clock[()], ac[()], size[()], feasible[()], reason)
 
 
-def largest_rate_ratio(elevation, device="electric-sail"):
+def largest_rate_ratio(elevation: npt.ArrayLike, device: Film | str = "electric-sail") -> np.ndarray:
     """Largest feasible Omega / Omega_K at an elevation in rad, same shape: w <= T / (s c + T c^2), T = tan(cone
     limit)."""
     limit = force_shape(device).cone_limit()
@@ -62,7 +66,7 @@ def largest_rate_ratio(elevation, device="electric-sail"):
     return np.sqrt(np.sin(limit) / (s * c * np.cos(limit) + np.sin(limit) * c * c))
 
 
-def type_ii(radius, elevation, device="electric-sail") -> Holding:
+def type_ii(radius: npt.ArrayLike, elevation: npt.ArrayLike, device: Film | str = "electric-sail") -> Holding:
     """Requirements of a Type II orbit, which keeps the period of a Keplerian orbit of its radius: phi = 90 deg - psi.
     (4.7)
 
@@ -76,18 +80,24 @@ def type_ii(radius, elevation, device="electric-sail") -> Holding:
     return found
 
 
-def ecliptic(radius, rate_ratio, device="electric-sail") -> Holding:
+def ecliptic(radius: npt.ArrayLike, rate_ratio: npt.ArrayLike, device: Film | str = "electric-sail") -> Holding:
     """Requirements of a circular orbit in the ecliptic at other than the Keplerian rate: Sun-facing. radius m,
     broadcast."""
     return circular(radius, 0.0, rate_ratio, device)
 
 
-def heliostationary(radius, device="electric-sail") -> Holding:
+def heliostationary(radius: npt.ArrayLike, device: Film | str = "electric-sail") -> Holding:
     """Requirements for resting at a distance in m from the Sun, in any direction: Sun-facing, |a| = mu / r^2."""
     return circular(radius, 0.0, 0.0, device)
 
 
-def lagrange_point(radius, device="electric-sail", *, planet_mu=0.0, planet_orbit=AU) -> Holding:
+def lagrange_point(
+    radius: npt.ArrayLike,
+    device: Film | str = "electric-sail",
+    *,
+    planet_mu: npt.ArrayLike = 0.0,
+    planet_orbit: npt.ArrayLike = AU,
+) -> Holding:
     """Requirements of an artificial Lagrange point on the line from the Sun to a planet; scalars or arrays, broadcast.
 
     radius : m from the Sun. planet_mu : m3/s2, 0 leaves the planet's gravity out (constants.MU_EARTH for the Earth).
@@ -128,7 +138,7 @@ def lagrange_point(radius, device="electric-sail", *, planet_mu=0.0, planet_orbi
     return Holding(cone[()], pitch[()], clock[()], ac[()], np.abs(size)[()], feasible[()], reason)
 
 
-def state(radius, elevation, rate_ratio, azimuth=0.0):
+def state(radius: float, elevation: float, rate_ratio: float, azimuth: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """Position m and velocity m/s, each (3,), on the circular orbit: same arguments, azimuth rad from the x axis."""
     rho, z = radius * np.cos(elevation), radius * np.sin(elevation)
     speed = rate_ratio * np.sqrt(MU_SUN / radius**3) * rho

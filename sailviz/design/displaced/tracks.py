@@ -6,14 +6,21 @@ Source: thesis, section 4.3, not read; re-derived from spherical kinematics and 
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from sailviz.constants import AU, MU_SUN
 from sailviz.design.displaced.force_shape import force_shape
-from sailviz.design.displaced.holding import Track, hold_track
+from sailviz.design.displaced.holding import Motion, Track, hold_track
+from sailviz.propulsion.solar_sail import Film
 
 
 def planet_following(
-    semi_major_axis, eccentricity, true_anomaly, elevation, radius_ratio=1.0, device="electric-sail"
+    semi_major_axis: npt.ArrayLike,
+    eccentricity: npt.ArrayLike,
+    true_anomaly: npt.ArrayLike,
+    elevation: npt.ArrayLike,
+    radius_ratio: npt.ArrayLike = 1.0,
+    device: Film | str = "electric-sail",
 ) -> Track:
     """Requirements for keeping a planet's longitude at a fixed elevation; all broadcast.
 
@@ -53,7 +60,14 @@ def planet_following(
     )
 
 
-def flat_ellipse(semi_latus_rectum, eccentricity, true_anomaly, height, mu_ratio=1.0, device="electric-sail") -> Track:
+def flat_ellipse(
+    semi_latus_rectum: npt.ArrayLike,
+    eccentricity: npt.ArrayLike,
+    true_anomaly: npt.ArrayLike,
+    height: npt.ArrayLike,
+    mu_ratio: npt.ArrayLike = 1.0,
+    device: Film | str = "electric-sail",
+) -> Track:
     """Requirements for a Keplerian ellipse lifted off the ecliptic: its focus above the Sun; all broadcast.
 
     semi_latus_rectum : m, eccentricity < 1, true_anomaly : rad from the perihelion on the x axis. height : m over the
@@ -93,7 +107,9 @@ def flat_ellipse(semi_latus_rectum, eccentricity, true_anomaly, height, mu_ratio
     )
 
 
-def track(time, radius, elevation, azimuth, device="electric-sail") -> Track:
+def track(
+    time: npt.ArrayLike, radius: Motion, elevation: Motion, azimuth: Motion, device: Film | str = "electric-sail"
+) -> Track:
     """Requirements for a prescribed track. radius m, elevation rad, azimuth rad: each (value, rate, second rate) over
     time in s, scalars or arrays, all broadcast."""
     return hold_track(
@@ -107,7 +123,7 @@ def track(time, radius, elevation, azimuth, device="electric-sail") -> Track:
     )
 
 
-def sampled_track(time, position, device="electric-sail") -> Track:
+def sampled_track(time: npt.ArrayLike, position: npt.ArrayLike, device: Film | str = "electric-sail") -> Track:
     """Requirements for a track that is given as points. time (n,) s, increasing, n >= 8; position (n, 3) m from the
     Sun.
 

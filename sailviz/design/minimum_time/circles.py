@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -77,9 +78,7 @@ def circle_to_circle(
 
     guess = _flight_time(device, sail, ratio)
     for n, spans in zip(DIRECTIONS, SPANS, strict=True):
-        found = search(
-            flight, spans * guess, n, ratio > 1, accept, progress=lambda x, n=n: report(x, f"{n} directions")
-        )
+        found = search(flight, spans * guess, n, ratio > 1, accept, progress=partial(_share, report, f"{n} directions"))
         if found.extremals:
             return result(found, "screening")
 
@@ -90,7 +89,7 @@ def circle_to_circle(
         easy = search(base, SPANS[0] * base_guess, DIRECTIONS[0], ratio > 1, accept)
         if not easy.extremals:
             continue
-        path = follow(problem_at, easy.extremals[0].unknowns, progress=lambda x, name=name: report(x, name))
+        path = follow(problem_at, easy.extremals[0].unknowns, progress=partial(_share, report, name))
         if path.complete and accept(path.unknowns):
             miss = float(np.linalg.norm(flight.misses(path.unknowns[None], 1e-13)))
             extremal = Extremal(path.unknowns, miss)
@@ -138,7 +137,7 @@ def planar_orbit_to_orbit(
 
     span = SPANS[0] * _flight_time(device, sail, ratio)
     found = search(
-        flight, span, directions, ratio > 1, accept, progress=lambda x: report(x, f"{directions} directions")
+        flight, span, directions, ratio > 1, accept, progress=partial(_share, report, f"{directions} directions")
     )
     if found.extremals:
         return fastest_transfer(flight, found, device, characteristic_acceleration, a, "screening")
@@ -152,9 +151,13 @@ def planar_orbit_to_orbit(
 
 def _check(device: Film | str, characteristic_acceleration: float, **positive: float) -> None:
     for name, value in {"characteristic_acceleration": characteristic_acceleration, **positive}.items():
-        if not (np.isscalar(value) and np.isfinite(value) and value > 0):
+        if np.ndim(value) or not (np.isfinite(value) and value > 0):
             raise ValueError(f"{name} must be a positive number, got {value!r}")
     canonical_sail(device, characteristic_acceleration)  # ValueError for what is no sail
+
+
+def _share(report: Progress, words: str, share: float) -> None:
+    report(share, words)
 
 
 def _is_fastest(flight: PlanarProblem, unknowns: np.ndarray) -> bool:

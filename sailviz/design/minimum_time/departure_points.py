@@ -95,20 +95,22 @@ def minimum(problem: OrbitProblem, unknowns: Unknowns, step: float, smoothing: f
 
     step : rad between departure points. smoothing : with which the flight was found.
     """
-    x: Unknowns | None = unknowns
+    rough = unknowns
     if smoothing > 0:
-        x = _descend(problem, unknowns, step, smoothing, LOOSE, CLOSE_SLOPE)
-        if x is None:
+        rounded = _descend(problem, unknowns, step, smoothing, LOOSE, CLOSE_SLOPE)
+        if rounded is None:
             return None
-        x, residual = problem.sharpen(x)
+        rough, residual = problem.sharpen(rounded)
         if residual > NEAR:
             return None
-    x = _descend(problem, x, step, 0.0, LOOSE, CLOSE_SLOPE)
-    if x is None:
+    near = _descend(problem, rough, step, 0.0, LOOSE, CLOSE_SLOPE)
+    if near is None:
         return None
-    x, residual = problem.search(x, 0.0, TIGHT)
-    x = _descend(problem, x, 0.1 * step, 0.0, TIGHT, EXACT_SLOPE) if residual <= EXACT else None
-    return x if x is not None and problem.hamiltonian(x) > 0 else None
+    polished, residual = problem.search(near, 0.0, TIGHT)
+    if residual > EXACT:
+        return None
+    found = _descend(problem, polished, 0.1 * step, 0.0, TIGHT, EXACT_SLOPE)
+    return found if found is not None and problem.hamiltonian(found) > 0 else None
 
 
 def _descend(

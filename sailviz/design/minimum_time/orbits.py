@@ -29,7 +29,7 @@ from sailviz.design.minimum_time.state_costate import (
     canonical_sail,
     revolutions,
 )
-from sailviz.design.minimum_time.unknowns import SMOOTHING, TIGHT, Unknowns, distinct, fastest
+from sailviz.design.minimum_time.unknowns import SMOOTHING, TIGHT, Unknowns, distinct, span_of
 from sailviz.elements import Elements
 from sailviz.propulsion.solar_sail import Film
 
@@ -114,7 +114,7 @@ def orbit_to_orbit(
         minima = distinct(pool.map(lambda x: minimum(problem, x, spacing, smoothing), valleys(ring)))
     report(total, "done")
     if not minima:
-        return _nothing(problem, fastest(ring), 1.0, device, characteristic_acceleration)
+        return _nothing(problem, min(filter(None, ring), key=span_of), 1.0, device, characteristic_acceleration)
     claim = (
         f"best found of {len(minima)} local {'minimum' if len(minima) == 1 else 'minima'} "
         f"from {starts} departure points; a faster flight is not excluded"

@@ -32,6 +32,7 @@ from sailviz.design.minimum_time.state_costate import (
 from sailviz.design.minimum_time.unknowns import TIGHT, Unknowns, fastest, span_of
 from sailviz.propulsion.solar_sail import Film
 
+DATES = 41  # tried in a window
 ANCHORS = 4  # dates between two of a window's fresh searches
 FASTER = 1e-9  # relative flight time by which a flight handed on must win
 
@@ -83,7 +84,7 @@ def rendezvous(
     characteristic_acceleration: float = 1e-3,
     *,
     origin: str = "Earth",
-    dates: int = 41,
+    dates: int = DATES,
     source: str = "mean-elements",
     workers: int = 2,
     progress: Callable[[float, str], None] | None = None,
@@ -144,7 +145,7 @@ def _check(target: str, origin: str, characteristic_acceleration: float) -> None
 def _window(departure: Date | tuple[Date, Date] | list[Date]) -> tuple[np.datetime64, np.datetime64]:
     """First and last date; the same one where a single date was given."""
     pair = departure if isinstance(departure, tuple | list) else (departure, departure)
-    first, last = (np.datetime64(date, "ns") for date in pair)
+    first, last = (np.datetime64(date).astype("datetime64[ns]") for date in pair)
     if last < first:
         raise ValueError(f"the window ends, {last}, before it begins, {first}")
     return first, last

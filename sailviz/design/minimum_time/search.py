@@ -11,17 +11,24 @@ Following. Where nothing converges: pseudo-arclength continuation in a parameter
 from __future__ import annotations
 
 import os
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
 from sailviz.compiled import compiled
 from sailviz.design.minimum_time import shooting
-from sailviz.design.minimum_time.boundary_conditions import ANOMALY, DIRECTION, SPAN
+from sailviz.design.minimum_time.boundary_conditions import ANOMALY, DIRECTION, SPAN, PlanarProblem
 from sailviz.design.minimum_time.costates import propagate_compiled
 from sailviz.design.minimum_time.state_costate import SIZE, VX, VY, X, Y
+from sailviz.propulsion.solar_sail import Film
 from sailviz.steering.optimal import optimal_pitch
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 LOOSE, TIGHT = 1e-9, 1e-13  # integration tolerances
 ROUGH = 1e-6  # of screening
@@ -92,7 +99,7 @@ def screen(starts, span, samples, kind, p, eps, tolerance, target, miss, when):
         miss[i], when[i] = np.sqrt(best), at
 
 
-def sequence(n, dimensions):
+def sequence(n: int, dimensions: int) -> np.ndarray:
     """(n, dimensions) points of a low-discrepancy sequence in the unit cube: multiples of the powers of the root of
     x^(d + 1) = x + 1 (M. Roberts' generalised golden ratio)."""
     g = 1.5
@@ -112,7 +119,7 @@ def _turned(axes, angle, around):
     return np.cos(angle)[:, None] * axes + np.sin(angle)[:, None] * sideways
 
 
-def spread(problem, n, outwards):
+def spread(problem: PlanarProblem, n: int, outwards: bool) -> np.ndarray:
     """n unknowns all over the sphere of costate directions, and all round the initial orbit where that is free."""
     q = sequence(n, problem.size - 2)
     axis = (1 if outwards else -1) * np.array([1.0, 0.0, 1.0]) / np.sqrt(2)
@@ -123,7 +130,9 @@ def spread(problem, n, outwards):
     return unknowns
 
 
-def in_threads(function, items, progress=None):
+def in_threads(
+    function: Callable[[Item], Result], items: Sequence[Item], progress: Callable[[float], None] | None = None
+) -> list[Result]:
     """[function(item)] in the order of the items; compiled code lets go of the interpreter."""
     results = []
     with ThreadPoolExecutor(WORKERS) as pool:
@@ -185,7 +194,7 @@ def _solve(problem, unknowns, smoothing):
     )
 
 
-def finish(problem, unknowns, smoothing=0.0) -> Extremal | None:
+def finish(problem: PlanarProblem, unknowns: np.ndarray, smoothing: float = 0.0) -> Extremal | None:
     """The extremal that rough unknowns (k,) lead to, or None."""
     for eps in [eps for eps in ROUNDINGS if eps <= smoothing]:
         found = _solve(problem, unknowns, eps)
@@ -198,7 +207,7 @@ def finish(problem, unknowns, smoothing=0.0) -> Extremal | None:
     return Extremal(found.unknowns, found.residual)
 
 
-def distinct(extremals) -> tuple[Extremal, ...]:
+def distinct(extremals: Iterable[Extremal]) -> tuple[Extremal, ...]:
     """Without repetitions, fastest first; two are one when times and costates agree to 1e-6."""
     kept: list[Extremal] = []
     for extremal in sorted(extremals, key=lambda e: e.time):
@@ -208,25 +217,32 @@ def distinct(extremals) -> tuple[Extremal, ...]:
     return tuple(kept)
 
 
-def search(problem, span, n, outwards, accept, roundings=None, progress=None) -> Search:
+def search(
+    problem: PlanarProblem,
+    span: float,
+    n: int,
+    outwards: bool,
+    accept: Callable[[np.ndarray], bool],
+    roundings: Sequence[float] | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Search:
     """Screen n directions over a span, finish the best. accept(unknowns (k,)) -> bool refuses extremals that are not
     wanted. roundings : with which the switching is rounded off at first, one pass each."""
     if roundings is None:
         roundings = (0.03, 0.1, 0.0) if problem.sail.rounds_off else (0.0,)
-    found, starts, best, nearest = [], 0, np.inf, None
+    found: list[Extremal | None] = []
+    starts, best, nearest = 0, np.inf, np.empty(0)
     for i, eps in enumerate(roundings):
 
-        def report(share, i=i):
+        def report(begin: float, share: float, i: int = i) -> None:
             if progress is not None:
-                progress((i + share) / len(roundings))
+                progress((i + begin + 0.5 * share) / len(roundings))
 
-        miss, candidates = _candidates(problem, n, span, eps, outwards, lambda x, report=report: report(0.5 * x))
+        miss, candidates = _candidates(problem, n, span, eps, outwards, partial(report, 0.0))
         if miss[0] < best:
             best, nearest = float(miss[0]), candidates[0]
         starts += len(candidates)
-        found += in_threads(
-            lambda x, eps=eps: finish(problem, x, eps), candidates, lambda x, report=report: report(0.5 + 0.5 * x)
-        )
+        found += in_threads(partial(finish, problem, smoothing=eps), candidates, partial(report, 0.5))
     converged = [extremal for extremal in found if extremal is not None and accept(extremal.unknowns)]
     return Search(distinct(converged), starts, len(converged), best, nearest)
 
@@ -243,7 +259,12 @@ class Path:
         return self.parameter == 1.0
 
 
-def follow(problem_at, unknowns, steps=500, progress=None) -> Path:
+def follow(
+    problem_at: Callable[[float], PlanarProblem],
+    unknowns: np.ndarray,
+    steps: int = 500,
+    progress: Callable[[float], None] | None = None,
+) -> Path:
     """Pseudo-arclength continuation from a solution of problem_at(0) towards problem_at(1), through folds.
 
     problem_at(s) : a problem for every s; unknowns (k,) solve it at 0. An E-sail is followed with its switching
@@ -312,7 +333,7 @@ def follow(problem_at, unknowns, steps=500, progress=None) -> Path:
     return Path(float(reach), best)
 
 
-def spiral_time(device, strength, exponent, start, end):
+def spiral_time(device: Film | str, strength: float, exponent: float, start: float, end: float) -> float:
     """Flight time between circles by slow spiral at the best transverse thrust, units mu = 1: Edelbaum's
     dr/dt = 2 r^1.5 a_t with a_t = strength r^-exponent h(90 deg)."""
     power = exponent - 0.5

@@ -6,9 +6,11 @@ damping follows H. B. Nielsen, Damping parameter in Marquardt's method (1999). R
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 
 @dataclass(frozen=True)
@@ -20,7 +22,15 @@ class Root:
     evaluations: int
 
 
-def solve(residuals, unknowns, *, step=1e-7, goal=1e-12, most=60, limit=None) -> Root:
+def solve(
+    residuals: Callable[[np.ndarray], np.ndarray],
+    unknowns: npt.ArrayLike,
+    *,
+    step: float = 1e-7,
+    goal: float = 1e-12,
+    most: int = 60,
+    limit: npt.ArrayLike | None = None,
+) -> Root:
     """The unknowns (n,) that bring residuals(batch (m, n)) -> (m, k), k >= n, to zero, or as near as the search got.
 
     step : of the differences, relative to the larger of 1 and an unknown's size. goal : largest entry of the residual

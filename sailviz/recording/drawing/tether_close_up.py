@@ -77,8 +77,7 @@ class TetherCloseUp:
         """A group of drawn rows."""
         picture, index, count, run = self._picture, samples.index, len(samples), samples.run
         velocity, thrust, normal = (turned(v) for v in (samples.velocity_rtn, samples.thrust_rtn, samples.normal_rtn))
-        axes = body_axes(normal, np.tile([0.0, 1.0, 0.0], (count, 1)))
-        axes = axes[..., [1, 0, 2]] * [-1.0, 1.0, 1.0]  # panels across the flight direction
+        axes = body_axes(normal, np.tile([1.0, 0.0, 0.0], (count, 1)))  # panels across the flight direction
         picture.log_pose("/sail/body", index, quaternion=quaternion(axes))
         self._glow.add(samples.index_of, run.thrust.on)
         picture.log_pose("/sail/motion", index, quaternion=quaternion(x_along(velocity)))

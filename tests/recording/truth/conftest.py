@@ -1,0 +1,22 @@
+"""Every flight is flown and recorded once a session, when a test first looks at it."""
+
+import pytest
+
+from sailviz.recording import record
+
+from .flights import FLIGHTS, Flight
+
+
+@pytest.fixture(scope="session")
+def flights(tmp_path_factory):
+    """flights(name) -> Flight."""
+    folder, known = tmp_path_factory.mktemp("flights"), {}
+
+    def flight(name: str) -> Flight:
+        if name not in known:
+            path = folder / f"{name.replace(' ', '_')}.rrd"
+            record(FLIGHTS[name](), path)
+            known[name] = Flight(name, path)
+        return known[name]
+
+    return flight

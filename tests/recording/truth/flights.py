@@ -1,0 +1,141 @@
+"""Short runs of every family, each recorded once: the smallest that draw everything that the family can draw."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+import sailviz
+from sailviz.run.from_arrays import trajectory
+
+from .facts import Truth
+from .picture import Picture
+
+AU, DAY = 149_597_870_700.0, 86_400.0
+MU_SUN, MU_EARTH, EARTH = 1.327_124_400_18e20, 3.986_004_415e14, 6_378_137.0
+
+
+@dataclass(frozen=True)
+class Flight:
+    """A recording as a picture and as numbers."""
+
+    name: str
+    path: Path
+
+    @cached_property
+    def picture(self) -> Picture:
+        return Picture(self.path)
+
+    @cached_property
+    def truth(self) -> Truth:
+        return Truth(sailviz.read(self.path), slowed=self.name in SLOWED)
+
+
+def scene(name: str, **values) -> Callable[[], sailviz.Run]:
+    """A shipped scene with some values changed: the keys' dots are written as two underscores."""
+    changes = {key.replace("__", "."): value for key, value in values.items()}
+    return lambda: sailviz.simulate(sailviz.load_scene(name, changes))
+
+
+def tumbling(count: int, period: float, phase: float):
+    """Unit vectors (count, 3) that point everywhere in turn."""
+    angle = phase + np.linspace(0, 2 * np.pi, count) * period
+    vectors = np.stack([np.cos(angle), np.sin(1.7 * angle), np.sin(angle) + 0.4], 1)
+    return vectors / np.linalg.norm(vectors, axis=1, keepdims=True)
+
+
+def ellipse(time, mu, size, eccentricity, tilt):
+    """Position and velocity (n, 3) on a tilted ellipse, by Kepler's equation; no axis of it lies along x, y or z."""
+    anomaly = mean = np.sqrt(mu / size**3) * np.asarray(time)
+    for _ in range(60):
+        anomaly = mean + eccentricity * np.sin(anomaly)
+    across = np.sqrt(1 - eccentricity**2)
+    rate = np.sqrt(mu / size**3) / (1 - eccentricity * np.cos(anomaly))
+    flat = size * np.stack([np.cos(anomaly) - eccentricity, across * np.sin(anomaly), 0 * anomaly], 1)
+    pace = (size * rate)[:, None] * np.stack([-np.sin(anomaly), across * np.cos(anomaly), 0 * anomaly], 1)
+    c, s = np.cos(0.7), np.sin(0.7)
+    turned = np.array([[1, 0, 0], [0, np.cos(tilt), -np.sin(tilt)], [0, np.sin(tilt), np.cos(tilt)]])
+    turned = turned @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+    return flat @ turned.T, pace @ turned.T
+
+
+def own_sail():
+    """A sail that points anywhere, its thrust elsewhere, switched off for a while."""
+    time = np.linspace(0, 400 * DAY, 33)
+    position, velocity = ellipse(time, MU_SUN, 0.9 * AU, 0.2, 0.3)
+    out = position / np.linalg.norm(position, axis=1, keepdims=True)
+    normal = out + 0.9 * tumbling(33, 2, 0.3)
+    thrust = 1e-3 * (out + 0.5 * tumbling(33, 3, 1.0)) * (1 + 0.5 * np.sin(time / 5e6))[:, None]
+    thrust[20:24] = 0.0
+    return trajectory(
+        time,
+        position,
+        velocity,
+        normal=normal,
+        thrust=thrust,
+        side=60.0,
+        epoch="2031-04-01T06:00:00",
+        events=[("flare", 100.3 * DAY), ("eclipse of a star", 250.0 * DAY)],
+        references={"a ring": AU * np.stack([np.cos(time), np.sin(time), 0.1 * np.sin(time)], 1)},
+        environment={
+            "solar_wind_pressure_Pa": 2e-9 * (1 + 0.3 * np.sin(time / 1e6)),
+            "field_T": np.full(33, 5e-9) * (1 + time / time[-1]),
+            "thrust_voltage_V": 20e3 + time / 1e5,
+            "film_temperature_K": 300 + time / 1e6,
+            "warm": time > 200 * DAY,
+        },
+    )
+
+
+def own_thruster():
+    """Round the Earth with an engine that fires at times, and no rows for two hours."""
+    time = DAY * np.concatenate([np.linspace(0, 0.17, 35), np.linspace(0.28, 0.42, 30)])
+    position, velocity = ellipse(time, MU_EARTH, EARTH + 2000e3, 0.1, 1.1)
+    thrust = 2e-5 * tumbling(len(time), 2, 0.2)
+    thrust[10:20] = thrust[40:45] = 0.0
+    return trajectory(time, position, velocity, thrust=thrust, mu=MU_EARTH, epoch="2027-09-10T03:00:00")
+
+
+def own_point():
+    """A dust grain round a body that is a point, without a date, going round sixty times: drawn slowed."""
+    time = np.linspace(0, 60 * 2 * np.pi * np.sqrt(1500.0**3 / 5.0), 27)
+    position, velocity = ellipse(time, 5.0, 1500.0, 0.3, 0.4)
+    return trajectory(time, position, velocity, mu=5.0, body="Bennu", title="Dust")
+
+
+SMALL = {"propagation__outputs": 31}
+FLIGHTS: dict[str, Callable[[], sailviz.Run]] = {
+    "displaced": scene(
+        "displaced/circular",
+        propagation__duration_yr=1.3,
+        propagation__outputs=37,
+        start__elevation_deg=20,
+        start__rate_ratio=0.7,
+    ),
+    "following": scene("displaced/mars-following", propagation__outputs=61),
+    "spiral": scene("spirals/optical-sail", propagation__outputs=161),
+    "approximations": scene("spirals/first-order", propagation__outputs=101),
+    "transfer": scene("transfers/mars-rendezvous-2031", propagation__outputs=49),
+    "orbits": scene("transfers/earth-mercury-orbits", propagation__outputs=121),
+    "brake": scene("deorbit/gravity-gradient", propagation__duration_d=0.45, propagation__output_interval_min=7),
+    "decay": scene(
+        "deorbit/aalto-1",
+        start__mean_altitude_km=360,
+        propagation__duration_yr=0.12,
+        propagation__output_interval_min=1430,
+        propagation__dense__0__output_interval_min=6,
+    ),
+    "drag": scene("deorbit/drag-only", propagation__duration_yr=0.3, propagation__output_interval_min=2900),
+    "chaos": scene("wind/gpc-spiral", **SMALL),
+    "wind": scene("wind/voltage-limits", **SMALL),
+    "held": scene("wind/held-displaced", propagation__outputs=61),
+    "light": scene("wind/flickering-sun", **SMALL),
+    "own sail": own_sail,
+    "own thruster": own_thruster,
+    "own point": own_point,
+}
+SLOWED = ("decay", "drag", "own point")

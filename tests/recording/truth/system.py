@@ -1,0 +1,292 @@
+"""/world: places, orbits and planets against /state, /elements and the ephemeris."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .facts import planet_ellipse, planet_place, unit
+from .measure import hue, on_ring, same_angle, same_direction, same_place
+from .seen import poses, some, spots, strips, texts
+
+TARGET = 1.006  # a target is drawn so much large: on the trail it would tear
+HIGH, BETWEEN, LOW = (100, 190, 255), (226, 206, 196), (255, 112, 67)  # of a descent: start, three quarters, ground
+STRAYS = 2e-3  # of the distance: what a curve between rows may stray from the orbit of its last row
+PLANET_HUES = {
+    "Mercury": "grey",
+    "Venus": "yellow",
+    "Earth": "blue",
+    "Mars": "orange",
+    "Jupiter": "orange",
+    "Saturn": "yellow",
+}
+
+
+def right_handed(f, entity):
+    """x, y, z are right-handed, z up."""
+    assert f.picture.fixed(entity, "ViewCoordinates:xyz")[0].tolist() == [3, 5, 1]  # right, forward, up
+
+
+def backdrop(f, entity):
+    """Stars: far outside of everything, all round."""
+    points = f.picture.place(entity, "Points3D:positions", 0)
+    far = np.linalg.norm(points, axis=1)
+    assert far.min() > (0.0 if entity.startswith("/sail") else 20 * f.truth.reach)
+    assert np.linalg.norm(unit(points).mean(0)) < 0.1
+
+
+def sun_ball(f, entity):
+    """A ball about the centre."""
+    points = f.picture.place(entity, "Mesh3D:vertex_positions", 0)
+    radius = np.linalg.norm(points, axis=1)
+    assert radius.max() == np.float64(radius.max())
+    same_place(radius, np.full(len(radius), radius[0]), size=10 * radius[0])
+    assert 0.005 * f.truth.reach < radius[0] < 0.1 * f.truth.reach
+
+
+def in_centre(f, entity, component="Points3D:positions"):
+    """In the centre."""
+    assert not f.picture.place(entity, component, 0).any()
+
+
+def sun_name(f, entity):
+    """Says Sun, below the Sun."""
+    (x, y, z) = f.picture.place(entity, "Points3D:positions", 0)[0]
+    assert (x, y) == (0, 0)
+    assert -0.2 * f.truth.reach < z < 0
+    assert f.picture.fixed(entity, "Points3D:labels") == ["Sun"]
+
+
+def ecliptic(f, entity):
+    """A disc in the plane of x and y as far as the craft goes, and a little more."""
+    points = f.picture.place(entity, "Mesh3D:vertex_positions", 0)
+    assert not points[:, 2].any()
+    assert np.linalg.norm(points, axis=1).max() >= f.truth.reach
+
+
+def sun_line(f, entity):
+    """From the centre to the craft."""
+    line = strips(f, entity)
+    assert not line[:, 0].any()
+    same_place(line[:, 1], f.truth.place, f.truth.length)
+
+
+def height_line(f, entity):
+    """From the point below the craft in the plane of x and y up to it."""
+    line = strips(f, entity)
+    same_place(line[:, 0], f.truth.place * [1.0, 1.0, 0.0], f.truth.length, f.truth.reach)
+    same_place(line[:, 1], f.truth.place, f.truth.length)
+
+
+def ramp(f, rows, factor=1.0) -> np.ndarray:
+    """The colour (n, 3) of rows of a descent, by altitude of the semi-major axis."""
+    start = np.linalg.norm(f.truth.position[0]) - f.truth.radius
+    share = (f.truth.elements["semi_major_axis_m"][rows] - f.truth.radius) / start
+    down = np.sqrt(np.clip(1 - share, 0, 1))
+    stops = np.array([HIGH, BETWEEN, LOW], float)
+    return factor * np.stack([np.interp(down, [0, 0.5, 1], stops[:, k]) for k in range(3)], 1)
+
+
+def ramped(f, entity, component="LineStrips3D:colors", factor=1.0):
+    """Blue at the first altitude, pale at three quarters of it, orange on the ground."""
+    steps, colors = f.picture.rows(entity, component)
+    packed = np.array([color[0] for color in colors], np.uint32)
+    drawn = np.stack([(packed >> shift) & 255 for shift in (24, 16, 8)], -1).astype(float)
+    assert np.abs(drawn - ramp(f, steps, factor)).max() < 1.5
+
+
+def trail(f, entity):
+    """Pieces that join on: each ends where the craft is in its row, passes every drawn row, and follows the orbit in
+    between."""
+    steps, _ = f.picture.rows(entity, "LineStrips3D:strips")
+    done, length = 0, f.truth.length
+    for step in steps:
+        lines = f.picture.line(entity, step)
+        whole = np.concatenate(lines)
+        same_place(whole[0], f.truth.place[done], length) if len(lines) == 1 else None
+        same_place(whole[-1], f.truth.place[step], length)
+        for row in range(done, step + 1):
+            near = np.linalg.norm(whole - f.truth.place[row] / length, axis=1).min()
+            gap = f.truth.time[row] - f.truth.time[max(row - 1, 0)] > f.truth.period / 6
+            assert near < (1e-2 if gap else 1e-6) * f.truth.reach, f"row {row} is not on the trail"
+        between = np.concatenate(lines)
+        if step > done:
+            between_rows(f, between, done, step)
+        done = step
+    assert done == f.truth.steps[-1], "the trail ends before the run"
+    if f.truth.round_planet:
+        ramped(f, entity)
+    else:
+        word = hue(f.picture.color(entity, "LineStrips3D:colors")[0])
+        assert word in ("cyan", "blue")
+
+
+def between_rows(f, points, first, last):
+    """Points between two rows lie near the orbit of one of them."""
+    points = points * f.truth.length
+    size = np.abs(points).max()
+    off = []
+    for row in range(first, last + 1):
+        normal, eccentricity, rectum = f.truth.ring(row)
+        across = np.linalg.norm(points, axis=-1) + points @ eccentricity - rectum
+        off.append(np.hypot(across, points @ normal))
+    rise = 0.2 * np.ptp(np.linalg.norm(f.truth.position[first : last + 1], axis=1))
+    allowed = max(STRAYS * size, rise) + (0.02 * size if pushed(f, first, last) else 0)
+    assert np.min(off, axis=0).max() < allowed, f"{np.min(off, axis=0).max():.3g} m off the orbit, of {size:.3g} m"
+
+
+def pushed(f, first, last) -> bool:
+    """Whether the thrust is strong enough to bend the way between two rows off their orbits."""
+    thrust = np.linalg.norm(f.truth.thrust[first : last + 1], axis=1).max()
+    gravity = f.truth.mu / np.sum(f.truth.position[first] ** 2)
+    return thrust > 0.02 * gravity
+
+
+def osculating(f, entity):
+    """At each row the orbit of its state, closed."""
+    steps = f.truth.steps
+    for step in steps:
+        for line in f.picture.line(entity, step):
+            on_ring(line, f.truth.ring(step), f.truth.length, 2e-6)
+    if f.truth.round_planet:
+        ramped(f, entity)
+
+
+def ladder(f, entity):
+    """The orbits of a few rows, from the first row to the last."""
+    steps, _ = f.picture.rows(entity, "LineStrips3D:strips")
+    for step in steps:
+        (line,) = f.picture.line(entity, step)
+        on_ring(line, f.truth.ring(step), f.truth.length, 2e-6)
+    assert steps[0] == 0
+    assert len(steps) > 8
+    if f.truth.round_planet:
+        ramped(f, entity, factor=1.0 if "/plane/" in entity else 0.55)
+
+
+def craft_name(f, entity):
+    """The craft's kind in words, beside it."""
+    words = {
+        "solar-sail": "Solar sail",
+        "electric-sail": "E-sail",
+        "plasma-brake": "Plasma brake",
+        "thruster": "Thruster",
+        "none": "Spacecraft",
+    }
+    assert f.picture.fixed(entity, "Points3D:labels") == [words[f.truth.kind]]
+    for row in some(f, 3):
+        off = f.picture.place(entity, "Points3D:positions", row)[0] - f.truth.place[row] / f.truth.length
+        assert np.linalg.norm(off) < 0.25 * max(f.truth.reach, 1e-9)
+
+
+def conic(name, seconds):
+    """Normal, eccentricity vector, semilatus rectum of a planet's orbit."""
+    return ring_of(*(value[0] for value in planet_ellipse(name, seconds)[:5]))
+
+
+def ring_of(a, e, i, raan, argument):
+    normal = np.array([np.sin(raan) * np.sin(i), -np.cos(raan) * np.sin(i), np.cos(i)])
+    node = np.array([np.cos(raan), np.sin(raan), 0.0])
+    along = np.cos(argument) * node + np.sin(argument) * np.cross(normal, node)
+    return normal, e * along, a * (1 - e**2)
+
+
+def start_seconds(f) -> float:
+    """s after J2000 of the first row; 0 without an epoch, when planets' orbits are those of J2000."""
+    return 0.0 if f.truth.seconds is None else float(f.truth.seconds[0] - f.truth.time[0])
+
+
+def planet_orbit(f, entity, name):
+    """The planet's ellipse at the start, all round, in the planet's colour."""
+    (line,) = f.picture.line(entity, 0)
+    on_ring(line, conic(name, start_seconds(f)), f.truth.length)
+    all_round(line)
+    assert hue(f.picture.color(entity, "LineStrips3D:colors")[0]) == PLANET_HUES[name]
+
+
+def all_round(line):
+    same_place(line[0], line[-1], size=10 * np.abs(line).max())
+    angle = np.unwrap(np.arctan2(line[:, 1], line[:, 0]))
+    assert abs(abs(angle[-1] - angle[0]) - 2 * np.pi) < 1e-3
+
+
+def planet_body(f, entity, name):
+    """Where the planet is, from its mean elements, in its colour."""
+    drawn = np.array([spot[0] for spot in spots(f, entity)])
+    same_place(drawn, planet_place(name, f.truth.seconds), f.truth.length)
+    assert hue(f.picture.color(entity, "Points3D:colors")[0]) == PLANET_HUES[name]
+
+
+def planet_name(f, entity, name):
+    """Its name where it is, in its colour."""
+    planet_body(f, entity, name)
+    assert set(texts(f, entity)) == {name}
+
+
+def column_place(f, entity, name):
+    """Where another answer says that the craft is."""
+    table = f.truth.recording["/approximation"]
+    drawn = np.array([spot[0] for spot in spots(f, entity)])
+    same_place(drawn, table[f"{name}_position_m"], f.truth.length)
+    if entity.endswith("/name"):
+        assert set(texts(f, entity)) == {name}
+    assert hue(f.picture.color(entity, "Points3D:colors")[0]) == "orange"
+
+
+def reference(f, entity, name):
+    """A curve of the design: the circle or track to be held, the orbits departed from, aimed at and reached, and what
+    other answers say. A target is pink and drawn 0.6 % large."""
+    (line,) = f.picture.line(entity, 0)
+    start, word = f.truth.resolved.get("start", {}), hue(f.picture.color(entity, "LineStrips3D:colors")[0])
+    if name == "designed_orbit":
+        assert word == "pink"
+        designed(f, line / TARGET, start)
+    elif name == "initial_orbit":
+        assert word == "blue"
+        on_ring(line, f.truth.ring(0), f.truth.length)
+    elif name.startswith("orbit_of_"):
+        assert word == "pink"
+        target = f.truth.resolved["target"]
+        names = ("semi_major_axis", "eccentricity", "inclination", "raan", "argument")
+        if target["planet"]:
+            ring = conic(target["planet"].capitalize(), start_seconds(f))
+        else:
+            ring = ring_of(*(target[key] for key in names))
+        on_ring(line / TARGET, ring, f.truth.length)
+    elif name == "reached":
+        assert word == "cyan"
+        on_ring(line, f.truth.ring(-1), f.truth.length, 2e-6)
+    elif name == "a_ring":
+        assert word == "pink"
+        same_place(np.linalg.norm(line[:, :2], axis=1), np.full(len(line), TARGET))
+        same_place(line[:, 2], 0.1 * line[:, 1], size=1)
+    else:
+        passes(line, f.truth.recording["/approximation"][f"{name}_position_m"] / f.truth.length, 1e-4)
+
+
+def designed(f, line, start):
+    """A circle above the ecliptic, or the track that the craft itself keeps to."""
+    if start["kind"] != "displaced":
+        passes(line, f.truth.position / f.truth.length, 1e-3)
+        return
+    radius, elevation = start["radius"] / f.truth.length, start["elevation"]
+    same_place(line[:, 2], np.full(len(line), radius * np.sin(elevation)), size=radius)
+    same_place(np.linalg.norm(line[:, :2], axis=1), np.full(len(line), radius * np.cos(elevation)), size=radius)
+    all_round(line)
+
+
+def passes(line, places, tolerance):
+    """A line of short pieces passes all places."""
+    pieces, starts = np.diff(line, axis=0), line[:-1]
+    for place in places:
+        off = place - starts
+        share = np.clip(np.sum(off * pieces, 1) / np.maximum(np.sum(pieces**2, 1), 1e-30), 0, 1)
+        near = np.linalg.norm(off - share[:, None] * pieces, axis=1).min()
+        assert near < tolerance * np.linalg.norm(place), f"passes at {near:.3g}"
+
+
+def season(f, entity):
+    """A frame that turns about z with the Sun's right ascension."""
+    pose = poses(f, entity)
+    sun = f.truth.sun
+    same_angle(np.arctan2(pose[:, 1, 0], pose[:, 0, 0]), np.arctan2(sun[:, 1], sun[:, 0]), 0.01)
+    same_direction(pose[:, :3, 2], np.broadcast_to([0.0, 0, 1], (len(pose), 3)))

@@ -22,13 +22,13 @@ if TYPE_CHECKING:
     from sailviz.recording.reader import Recording as Recording
     from sailviz.recording.reader import read as read
     from sailviz.recording.views.notebook import show as show
-    from sailviz.recording.writer import record as record
     from sailviz.recording.writer import record_trajectory as record_trajectory
     from sailviz.run.arrays import Run as Run
     from sailviz.scene.loading import Scene as Scene
     from sailviz.scene.loading import load_scene as load_scene
     from sailviz.simulation.loop import simulate as simulate
     from sailviz.simulation.loop import simulate_blocks as simulate_blocks
+    from sailviz.simulation.recorder import record as record
     from sailviz.sweeps.loop import sweep as sweep
     from sailviz.sweeps.result import Sweep as Sweep
     from sailviz.sweeps.store import SweepError as SweepError
@@ -41,7 +41,7 @@ _HOMES = {
     "simulate": "simulation.loop",
     "simulate_blocks": "simulation.loop",
     "Run": "run.arrays",
-    "record": "recording.writer",
+    "record": "simulation.recorder",
     "record_trajectory": "recording.writer",
     "read": "recording.reader",
     "Recording": "recording.reader",

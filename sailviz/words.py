@@ -36,6 +36,37 @@ def acceleration(value: float) -> str:
     return f"{value * 1e3:.5g} mm/s²" if abs(value) >= 1e-5 else f"{value * 1e6:.5g} µm/s²"
 
 
+SI = {  # endings of the names of columns; the longest that fits counts
+    "_m": "m",
+    "_m2": "m²",
+    "_m_s": "m/s",
+    "_m_s2": "m/s²",
+    "_s": "s",
+    "_rad": "rad",
+    "_kg": "kg",
+    "_kg_m3": "kg/m³",
+    "_m3": "1/m³",
+    "_u": "u",
+    "_Pa": "Pa",
+    "_N": "N",
+    "_N_m": "N/m",
+    "_V": "V",
+    "_A": "A",
+    "_W": "W",
+    "_W_m2": "W/m²",
+    "_K": "K",
+    "_eV": "eV",
+    "_T": "T",
+    "_sfu": "sfu",
+    "_m3_s2": "m³/s²",
+}
+
+
+def unit_of(column: str) -> str:
+    """The unit that the name of a column ends in: "position_m" -> m; "" for a column without one."""
+    return SI.get(max((ending for ending in SI if column.endswith(ending)), key=len, default=""), "")
+
+
 def nearest(word: str, words: Iterable[str]) -> str:
     """ "Did you mean ...?" or the list of what is allowed."""
     words = list(words)

@@ -17,7 +17,7 @@ from sailviz.recording.comparison.comparer import compare
 from sailviz.recording.comparison.differences import default_tolerance
 from sailviz.recording.comparison.result import Comparison
 from sailviz.recording.comparison.tables import Evidence, evidence
-from sailviz.recording.exports import _atomic, _write_npz, arrays
+from sailviz.recording.exports import arrays, write_npz, written_whole
 from sailviz.run import resample
 from sailviz.run.arrays import Run
 
@@ -53,7 +53,7 @@ class Regression:
         """Write the baseline from a scene or run. Tolerances that stand in the file stay."""
         data = evidence(self._run(source, values))
         self.baseline.parent.mkdir(parents=True, exist_ok=True)
-        _atomic(self.baseline, lambda part: _write_npz(part, self._thinned(data), compressed=True))
+        written_whole(self.baseline, lambda part: write_npz(part, self._thinned(data), compressed=True))
         kept = self._read_tolerances()
         text = self.tolerances.read_text() if kept else HEAD.format(name=self.name)
         if "atol" not in kept:
@@ -115,7 +115,7 @@ class Regression:
 
     def _keep_new(self, folder: Path, data: Evidence, source) -> None:
         """The new rows, and the whole recording of a run."""
-        _write_npz(folder / "new.npz", self._thinned(data), compressed=True)
+        write_npz(folder / "new.npz", self._thinned(data), compressed=True)
         if isinstance(source, Run):
             from sailviz.recording import record
 

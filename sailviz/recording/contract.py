@@ -19,12 +19,15 @@ Each is one archetype `sailviz.<Entity>` on the timelines step (the row's number
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 import rerun as rr
+from numpy.typing import ArrayLike
 
-from sailviz.run.arrays import EnsembleStatistics, Event, Run
+from sailviz.run.arrays import EnsembleStatistics, Event, Run, Setting
 
 CONTRACT = "sailviz/1"
 
@@ -81,6 +84,7 @@ ENDS = 10_000  # flights whose ends are recorded
 
 
 def ensemble_path(ensemble: EnsembleStatistics) -> str:
+    """The entity of an ensemble."""
     return f"/ensemble/{word(ensemble.name)}"
 
 
@@ -131,22 +135,22 @@ def word(name: str) -> str:
     return "".join(letter if letter.isalnum() else "_" for letter in name.lower())
 
 
-def arrow_column(values) -> pa.Array:
+def arrow_column(given: ArrayLike) -> pa.Array:
     """(n,) or (n, k) -> an Arrow column of n rows, f64, or bool where the values are."""
-    values = np.asarray(values)
+    values = np.asarray(given)
     values = np.ascontiguousarray(values, dtype=bool if values.dtype == bool else np.float64)
     flat = pa.array(values.ravel())
     return flat if values.ndim == 1 else pa.FixedSizeListArray.from_arrays(flat, values.shape[1])
 
 
-def columns(entity: str, table: dict):
+def columns(entity: str, table: dict[str, np.ndarray]) -> Iterable[rr.ComponentColumn]:
     """A table of numpy arrays as columns that a stream takes."""
     return rr.DynamicArchetype.columns(
         archetype=archetype(entity), components={name: arrow_column(values) for name, values in table.items()}
     )
 
 
-def event_columns(events: list[Event]):
+def event_columns(events: list[Event]) -> Iterable[rr.ComponentColumn]:
     """The table of events as columns that a stream takes."""
     return rr.DynamicArchetype.columns(
         archetype=archetype("/events"),
@@ -158,7 +162,7 @@ def event_columns(events: list[Event]):
     )
 
 
-def scene(setting, *, rows: int, complete: bool, ended: str) -> rr.DynamicArchetype:
+def scene(setting: Setting, *, rows: int, complete: bool, ended: str) -> rr.DynamicArchetype:
     """The static entity /scene."""
     craft = setting.craft
     sizes = {"craft_side_m": craft.side, "craft_tethers": craft.tethers, "craft_tether_length_m": craft.tether_length}
@@ -185,7 +189,7 @@ def scene(setting, *, rows: int, complete: bool, ended: str) -> rr.DynamicArchet
     )
 
 
-def plain(value):
+def plain(value: Any) -> Any:
     """What JSON has no word for, as something it has: arrays, dates, numpy numbers, dataclasses."""
     if isinstance(value, np.ndarray):
         return value.tolist()

@@ -10,13 +10,16 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 
 from sailviz.errors import RecordingError
-from sailviz.recording.comparison.tables import Evidence, Table, evidence
+from sailviz.recording.comparison.tables import Evidence, Source, Table, evidence
+from sailviz.recording.reader import EventRow, FilePath
 
 FORMATS = ("csv", "parquet", "npz", "oem")
 FEW = 5  # rows of an entity that stands on other rows than the truth, where only a part of those is wanted
@@ -24,7 +27,9 @@ STATE = ("position_m", "velocity_m_s")
 LETTERS = {"quaternion": "xyzw", "acceleration_rtn_m_s2": "rtn"}
 
 
-def export(source, out=None, to: str = "", *, entities=(), frame: str = "") -> tuple[Path, ...]:
+def export(
+    source: Source, out: FilePath | None = None, to: str = "", *, entities: Sequence[str] = (), frame: str = ""
+) -> tuple[Path, ...]:
     """Write a recording (or a Run, or a path of either kind that `compare` takes) for another program -> files written.
 
     out : file or folder; without one a file named after the recording in the current folder. to : one of FORMATS, by
@@ -42,14 +47,14 @@ def export(source, out=None, to: str = "", *, entities=(), frame: str = "") -> t
         if frame:
             raise RecordingError(f"a frame is named in an OEM; {to} holds the numbers in the frame of the run")
         if to == "npz":
-            return (_atomic(path, lambda part: _write_npz(part, arrays(data, wanted))),)
+            return (written_whole(path, lambda part: write_npz(part, arrays(data, wanted))),)
         return _write_tables(data, path, to, wanted)
     except OSError as error:
         raise RecordingError(f"cannot write {path}: {(error.strerror or str(error)).lower()}") from None
 
 
-def _target(data: Evidence, out, to: str) -> tuple[Path, str]:
-    out = None if out is None else Path(out)
+def _target(data: Evidence, given: FilePath | None, to: str) -> tuple[Path, str]:
+    out = None if given is None else Path(given)
     if not to:
         to = out.suffix.removeprefix(".").lower() if out is not None else ""
         if to not in FORMATS:
@@ -62,7 +67,7 @@ def _target(data: Evidence, out, to: str) -> tuple[Path, str]:
     return (out / name if out.is_dir() else out), to
 
 
-def _atomic(path: Path, write) -> Path:
+def written_whole(path: Path, write: Callable[[Path], None]) -> Path:
     """Write under a temporary name first, so that a file appears whole."""
     part = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
@@ -73,25 +78,24 @@ def _atomic(path: Path, write) -> Path:
     return path
 
 
-# ---------------------------------------------------------------- one table
-def _write_tables(data: Evidence, path: Path, to: str, wanted) -> tuple[Path, ...]:
+def _write_tables(data: Evidence, path: Path, to: str, wanted: Sequence[str]) -> tuple[Path, ...]:
     entities = [name for name in wanted or data.entities if name != "/events"]
     events = events_table(data) if data.events and (not wanted or "/events" in wanted) else None
     if "/events" in wanted and events is None:
         raise RecordingError(f"{data.label} holds no events")
     meta = {b"sailviz": json.dumps(data.facts, sort_keys=True).encode()}
-    if not entities:
-        return (_atomic(path, lambda part: _write_arrow(part, events.replace_schema_metadata(meta), to)),)
+    if not entities and events is not None:
+        return (written_whole(path, lambda part: _write_arrow(part, events.replace_schema_metadata(meta), to)),)
     apart = [] if wanted else [name for name in entities if name.startswith("/ensemble/")]  # on rows of their own
     table = flat_table(data, [name for name in entities if name not in apart]).replace_schema_metadata(meta)
-    written = [_atomic(path, lambda part: _write_arrow(part, table, to))]
+    written = [written_whole(path, lambda part: _write_arrow(part, table, to))]
     for name in apart:
         beside = path.with_name(f"{path.stem}{name.replace('/', '.')}{path.suffix}")
         own = flat_table(data, [name]).replace_schema_metadata(meta)
-        written.append(_atomic(beside, lambda part, own=own: _write_arrow(part, own, to)))
+        written.append(written_whole(beside, partial(_write_arrow, table=own, to=to)))
     if events is not None:
         beside = path.with_name(f"{path.stem}.events{path.suffix}")
-        written.append(_atomic(beside, lambda part: _write_arrow(part, events, to)))
+        written.append(written_whole(beside, lambda part: _write_arrow(part, events, to)))
     return tuple(written)
 
 
@@ -107,9 +111,10 @@ def _write_arrow(path: Path, table: pa.Table, to: str) -> None:
         pyarrow.csv.write_csv(table, path)
 
 
-def flat_table(data: Evidence, entities) -> pa.Table:
+def flat_table(data: Evidence, entities: Sequence[str]) -> pa.Table:
     """Entities side by side, one column per number. RecordingError where they do not stand on the same rows."""
-    columns, first = {}, None
+    columns: dict[str, pa.Array] = {}
+    first: tuple[Table, str] | None = None
     for entity in entities:
         table = data.table(entity)
         if first is None:
@@ -156,8 +161,7 @@ def events_table(data: Evidence) -> pa.Table:
     return pa.table(columns)
 
 
-# ---------------------------------------------------------------- numpy archive
-def arrays(data: Evidence, wanted=(), rows=None) -> dict[str, np.ndarray]:
+def arrays(data: Evidence, wanted: Sequence[str] = (), rows: np.ndarray | None = None) -> dict[str, np.ndarray]:
     """Everything as arrays by key: state.position_m, events.name, scene.identity ... rows : indices into the rows of
     the truth, for a part of them, and FEW of any other entity; the archive then says that it is thinned.
     """
@@ -166,9 +170,7 @@ def arrays(data: Evidence, wanted=(), rows=None) -> dict[str, np.ndarray]:
     for entity in [name for name in wanted or data.entities if name != "/events"]:
         table, key = data.table(entity), entity.strip("/")
         same = steps is not None and np.array_equal(table.step, steps)
-        pick = slice(None)
-        if rows is not None:
-            pick = rows if same else np.unique(np.linspace(0, len(table) - 1, FEW).round().astype(int))
+        pick = _picked(rows, same, len(table))
         if entity == "/state" or not same or wanted:
             found[f"{key}.step"] = np.asarray(table.step)[pick]
             found[f"{key}.time_s"] = np.asarray(table.time, float)[pick]
@@ -177,11 +179,8 @@ def arrays(data: Evidence, wanted=(), rows=None) -> dict[str, np.ndarray]:
                 _components(f"{key}.{name}", name, values, data.label)  # refuses rows of different lengths
                 values = values.astype(str)
             found[f"{key}.{name}"] = values[pick]
-    if data.events and (not wanted or "/events" in wanted):
-        found["events.name"] = np.array([event.name for event in data.events])
-        found["events.time_s"] = np.array([event.time for event in data.events])
-        found["events.state"] = np.array([event.state for event in data.events], float).reshape(-1, 7)
-        found["events.step"] = np.array([event.step for event in data.events])
+    if not wanted or "/events" in wanted:
+        found |= _event_arrays(data.events)
     for name, value in data.facts.items():
         found[f"scene.{name}"] = np.asarray(value)
     found["scene.epoch"] = np.asarray("" if data.epoch is None else str(data.epoch))
@@ -189,13 +188,32 @@ def arrays(data: Evidence, wanted=(), rows=None) -> dict[str, np.ndarray]:
     return found
 
 
-def _write_npz(path: Path, values: dict[str, np.ndarray], compressed: bool = False) -> None:
+def _picked(rows: np.ndarray | None, same: bool, count: int) -> slice | np.ndarray:
+    """Which of the rows of an entity are wanted. same : whether they are the rows of the truth."""
+    if rows is None:
+        return slice(None)
+    return rows if same else np.unique(np.linspace(0, count - 1, FEW).round().astype(int))
+
+
+def _event_arrays(events: Sequence[EventRow]) -> dict[str, np.ndarray]:
+    if not events:
+        return {}
+    return {
+        "events.name": np.array([event.name for event in events]),
+        "events.time_s": np.array([event.time for event in events]),
+        "events.state": np.array([event.state for event in events], float).reshape(-1, 7),
+        "events.step": np.array([event.step for event in events]),
+    }
+
+
+def write_npz(path: Path, values: dict[str, np.ndarray], compressed: bool = False) -> None:
+    """Write arrays by name."""
     with open(path, "wb") as file:
-        (np.savez_compressed if compressed else np.savez)(file, **values)
+        save: Callable[..., None] = np.savez_compressed if compressed else np.savez
+        save(file, **values)
 
 
-# ---------------------------------------------------------------- OEM
-def to_oem(source, path, frame: str = "") -> Path:
+def to_oem(source: Source | Evidence, path: FilePath, frame: str = "") -> Path:
     """Write position and velocity as an orbit ephemeris message.
 
     Runs round the Sun are computed in the ecliptic of J2000: they are rotated into EME2000, or left as they are with
@@ -244,7 +262,7 @@ def to_oem(source, path, frame: str = "") -> Path:
         position,
         velocity,
     )
-    return write_oem(path, ephemeris, comments)
+    return write_oem(Path(path), ephemeris, comments)
 
 
 def _checked_times(state: Table, label: str) -> np.ndarray:

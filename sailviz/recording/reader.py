@@ -4,59 +4,113 @@ from __future__ import annotations
 
 import difflib
 import json
+import os
 import tempfile
+import textwrap
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any, BinaryIO
 
 import numpy as np
-import pyarrow as pa
-from rerun.chunk import RrdReader
+from rerun.chunk import Chunk, LazyChunkStream, LazyStore, RrdReader
 
 from sailviz.errors import RecordingError
+from sailviz.recording.entity import Entity, counted
+from sailviz.recording.sinks import Memory
 
 MAGIC = b"RRF2"
 NEWEST = (0, 41)  # rerun whose files are known here
 FRAME = 16  # bytes of a message's head: kind and length of what follows, both 64-bit little-endian
-ROW_ID = "rerun.controls.RowId"
-TIMELINES = ("step", "sim_time", "utc")
+PICTURE = ("world", "sail", "plots", "phase", "about", "log", "arrival", "histogram")  # what is there for the eye
+FilePath = str | os.PathLike[str]
+TERMINAL = 110  # characters in a line
+TOLD = 12  # entities of a recording by others that are described on a terminal
 
 
-def read(path) -> Recording:
+def read(source: FilePath | bytes | BinaryIO | Memory | Recording) -> Recording:
     """Open a recording. Cheap: columns are read when they are asked for.
 
+    source : a path, the bytes of a file, an open binary file, a Memory that `record` has filled, or a Recording.
     A file that was cut off is read as far as its last whole message (`complete` is then False).
     Raises RecordingError, in one sentence, for what is not a recording or was written by a newer rerun.
     """
-    return Recording(Path(path))
+    if isinstance(source, Recording):
+        return source
+    if isinstance(source, str | os.PathLike):
+        return Recording(Path(source))
+    if isinstance(source, Memory):
+        return Recording(kept(source.bytes), "memory")
+    if isinstance(source, bytes):
+        return Recording(kept(source), "bytes")
+    content = source.read() if hasattr(source, "read") else None
+    if not isinstance(content, bytes):
+        raise RecordingError(f"cannot read {source!r}: give a path, bytes, or a file that was opened for reading bytes")
+    return Recording(kept(content), str(getattr(source, "name", "bytes")))
 
 
-class Recording:
-    """A recording on disk. `rec["/state"]["position_m"]` is (n, 3) float64, as it was in the run, bit for bit."""
+def kept(content: bytes) -> tempfile._TemporaryFileWrapper[bytes]:
+    """Bytes in a temporary file, which is there as long as it is referred to."""
+    file = tempfile.NamedTemporaryFile(suffix=".rrd")  # noqa: SIM115
+    file.write(content)
+    file.flush()
+    return file
 
-    def __init__(self, path: Path):
-        self.path = path
-        self._whole = None  # a temporary file that keeps the whole messages of one that was cut off
-        check_head(path)
-        self._reader = self._open(path)
+
+class Recording(Mapping[str, Entity]):
+    """A recording as a mapping from the paths of its entities, each a mapping from the names of its columns.
+
+    `recording["/state"]["position_m"]` is (n, 3) float64, as it was in the run, bit for bit.
+    """
+
+    def __init__(self, file: Path | tempfile._TemporaryFileWrapper[bytes], label: str = ""):
+        """file : a path, or a temporary file that lives as long as the Recording. label : its name in words."""
+        self._file = file
+        self.path = file if isinstance(file, Path) else Path(file.name)
+        self._label = label or str(self.path)
+        self._whole: tempfile._TemporaryFileWrapper[bytes] | None = None  # the whole messages of one that was cut off
+        self._tables: dict[str, Entity] = {}
+        check_head(self.path, self._label)
+        self._reader = self._open()
 
     def __getitem__(self, entity: str) -> Entity:
         name = "/" + entity.strip("/")
         if name not in self.entities:
             near = difflib.get_close_matches(name, self.entities, 1, 0.4)
             hint = f"; did you mean {near[0]}?" if near else ""
-            raise KeyError(f"{self.path} has no entity {name}{hint}")
+            raise KeyError(f"{self._label} has no entity {name}{hint}")
         if name not in self._tables:
-            self._tables[name] = Entity(name, self._chunks(name))
+            self._tables[name] = Entity(name, list(self.chunks(name)))
         return self._tables[name]
 
-    def __contains__(self, entity: str) -> bool:
-        return "/" + entity.strip("/") in self.entities
+    def __contains__(self, entity: object) -> bool:
+        return isinstance(entity, str) and "/" + entity.strip("/") in self.entities
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.entities)
+
+    def __len__(self) -> int:
+        return len(self.entities)
+
+    __eq__ = object.__eq__  # the same object: two recordings are compared by `compare`
+    __hash__ = object.__hash__
 
     def __repr__(self) -> str:
-        return f"<Recording {self.path}: {len(self.entities)} entities>"
+        rows, ours = self._rows(), [name for name in self.entities if self._is_truth(name)]
+        told = ours or list(self.entities)[:TOLD]
+        width = max((len(name) for name in told), default=0)
+        lines = [f"<Recording {self._label}: {len(self.entities)} entities{'' if self.complete else ', not complete'}>"]
+        for name in told:
+            columns = f"{counted(rows.get(name, 0))}: {self.head(name).described()}"
+            whole = columns.replace(" ", "\0").replace(",\0", ", ")  # fold between columns only
+            indent = f"  {name:<{width}}  "
+            folded = textwrap.wrap(whole, TERMINAL, initial_indent=indent, subsequent_indent=" " * len(indent))
+            lines += [line.replace("\0", " ") for line in folded]
+        if len(told) < len(self.entities):
+            lines.append(f"  and {len(self.entities) - len(told)} {'of plots and picture' if ours else 'more'}")
+        return "\n".join(lines)
 
     @cached_property
     def entities(self) -> tuple[str, ...]:
@@ -65,47 +119,56 @@ class Recording:
             lines = self._store.summary().splitlines()
             names = {line.split(" rows=")[0].strip() for line in lines if line.strip()}
         else:
-            names = {chunk.entity_path for chunk in self._stream()}
+            names = {chunk.entity_path for chunk in self.chunks()}
         return tuple(sorted(name for name in names if not name.startswith("/__")))
 
     @property
     def application_id(self) -> str:
         """`sailviz_<family>_<start of the identity>`, or the name of the application that wrote the file."""
-        return self._reader.recordings()[0].application_id
+        return str(self._reader.recordings()[0].application_id)
 
     @property
     def scene_text(self) -> str:
         """The scene file that was run, word for word."""
-        return self._scene("text", "")
+        return self._word("text")
 
     @property
-    def resolved(self) -> dict:
+    def resolved(self) -> dict[str, Any]:
         """Every value of the scene, SI."""
-        return json.loads(self._scene("resolved", "{}"))
+        values: dict[str, Any] = json.loads(self._word("resolved") or "{}")
+        return values
 
     @property
     def versions(self) -> dict[str, str]:
-        return json.loads(self._scene("versions", "{}"))
+        """Name and version of what made it."""
+        values: dict[str, str] = json.loads(self._word("versions") or "{}")
+        return values
 
     @property
     def accuracy(self) -> str:
         """How the numbers were made."""
-        return self._scene("accuracy", "")
+        return self._word("accuracy")
 
     @property
     def identity(self) -> str:
         """Hash of the resolved scene."""
-        return self._scene("identity", "")
+        return self._word("identity")
 
     @property
     def contract(self) -> str:
         """`sailviz/1`, or "" for a recording by another application."""
-        return self._scene("contract", "")
+        return self._word("contract")
+
+    @property
+    def cut_off(self) -> bool:
+        """Whether the file ends in the middle of a message."""
+        return self._whole is not None
 
     @property
     def complete(self) -> bool:
         """False where the run was interrupted or the file was cut off."""
-        return bool(self._scene("complete", False)) and self._whole is None
+        scene: Mapping[str, np.ndarray] = self.get("/scene", {})
+        return not self.cut_off and "complete" in scene and bool(scene["complete"][0])
 
     @property
     def events(self) -> list[EventRow]:
@@ -117,85 +180,68 @@ class Recording:
         order = np.argsort(times, kind="stable")
         return [EventRow(str(names[i]), float(times[i]), states[i], int(steps[i])) for i in order]
 
-    @cached_property
-    def _tables(self) -> dict[str, Entity]:
-        return {}
+    def chunks(self, entity: str = "") -> Iterator[Chunk]:
+        """The pieces in which rerun keeps an entity, or all of the file, read anew each time."""
+        stream = self._stream()
+        yield from stream.filter(content=entity) if entity else stream
 
-    def _scene(self, name: str, otherwise):
-        if "/scene" not in self:
-            return otherwise
-        scene = self["/scene"]
-        return scene[name][0] if name in scene else otherwise
+    def head(self, entity: str) -> Entity:
+        """An entity with the first of its rows only: enough to know its columns."""
+        found: list[Chunk] = []
+        for chunk in self.chunks(entity):
+            found.append(chunk)
+            if not chunk.is_static:
+                break
+        return Entity(entity, found)
+
+    def blueprints(self) -> list[list[Chunk]]:
+        """The pieces of each layout of views that travels with the recording."""
+        return [list(self._reader.stream(store=layout)) for layout in self._reader.blueprints()]
+
+    def _word(self, name: str) -> str:
+        """One of the words in /scene, "" where it is not there."""
+        scene: Mapping[str, np.ndarray] = self.get("/scene", {})
+        return str(scene[name][0]) if name in scene else ""
+
+    def _is_truth(self, name: str) -> bool:
+        """Whether an entity is one of the contract, not of the picture."""
+        return name.split("/")[1] not in PICTURE if self.contract else False
+
+    def _rows(self) -> dict[str, int]:
+        """How many rows each entity has; none for a file that was cut off, which has no index."""
+        counts: dict[str, int] = {}
+        for line in [] if self._store is None else self._store.summary().splitlines():
+            name, _, told = line.partition(" rows=")
+            number, _, more = told.partition(" ")
+            if more.startswith("static=False"):
+                counts[name.strip()] = counts.get(name.strip(), 0) + int(number)
+        return counts
 
     @cached_property
-    def _store(self):
+    def _store(self) -> LazyStore | None:
         """The file's index, None for a file that was cut off."""
         return None if self._whole else self._reader.store()
 
-    def _stream(self):
+    def _stream(self) -> LazyChunkStream:
         return self._reader.stream() if self._store is None else self._store.stream()
 
-    def _chunks(self, entity: str) -> list:
-        return list(self._stream().filter(content=entity))
-
-    def _open(self, path: Path):
+    def _open(self) -> RrdReader:
         try:
-            reader = open_quietly(path)
+            reader = open_quietly(self.path)
             if not reader.recordings():
-                raise RecordingError(f"{path} holds no recording")
+                raise RecordingError(f"{self._label} holds no recording")
             reader.store()
             return reader
         except (RuntimeError, ValueError):
             pass
-        whole = whole_messages(path)
-        self._whole = tempfile.NamedTemporaryFile(suffix=".rrd")  # noqa: SIM115, lives as long as the Recording
-        self._whole.write(path.read_bytes()[:whole])
-        self._whole.flush()
+        self._whole = kept(self.path.read_bytes()[: whole_messages(self.path)])
         try:
             reader = open_quietly(Path(self._whole.name))
             if reader.recordings():
                 return reader
         except (RuntimeError, ValueError) as error:
-            raise RecordingError(f"{path} cannot be read: {str(error).splitlines()[0]}") from None
-        raise RecordingError(f"{path} was cut off before anything was recorded")
-
-
-class Entity(Mapping):
-    """Columns of one entity by name, numpy, in order of `step`; made when asked for."""
-
-    def __init__(self, path: str, chunks: list):
-        self.path = path
-        batches = [chunk.to_record_batch() for chunk in chunks if not chunk.is_static]
-        self._static = latest_static([chunk.to_record_batch() for chunk in chunks if chunk.is_static])
-        self._tables = group_by_columns(batches)
-        self._names = {}
-        for table in self._tables:
-            self._names.update({short(name): name for name in table.column_names if ":" in name})
-        self._names.update({short(name): name for name in self._static})
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        if name not in self._names:
-            near = difflib.get_close_matches(name, self._names, 1, 0.4)
-            hint = f"; did you mean {near[0]}?" if near else f"; it has {', '.join(self._names)}"
-            raise KeyError(f"{self.path} has no column {name}{hint}")
-        full = self._names[name]
-        for table in self._tables:
-            if full in table.column_names:
-                return to_numpy(table[full])
-        return to_numpy(self._static[full])
-
-    def __iter__(self):
-        return iter(self._names)
-
-    def __len__(self) -> int:
-        return len(self._names)
-
-    def timeline(self, name: str = "step") -> np.ndarray:
-        """The rows' place on a timeline: step int64, sim_time timedelta64[ns], utc datetime64[ns]."""
-        for table in self._tables:
-            if name in table.column_names:
-                return table[name].to_numpy()
-        raise KeyError(f"{self.path} is not on a timeline {name}")
+            raise RecordingError(f"{self._label} cannot be read: {str(error).splitlines()[0]}") from None
+        raise RecordingError(f"{self._label} was cut off before anything was recorded")
 
 
 @dataclass(frozen=True)
@@ -208,33 +254,29 @@ class EventRow:
     step: int
 
 
-def short(name: str) -> str:
-    """sailviz.State:position_m -> position_m."""
-    return name.rsplit(":", 1)[-1]
-
-
-def open_quietly(path: Path):
+def open_quietly(path: Path) -> RrdReader:
+    """A reader that says nothing of a file without a footer: that is our business, not the caller's."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # a file without a footer is our business, not the caller's
+        warnings.simplefilter("ignore")
         return RrdReader(str(path))
 
 
-def check_head(path: Path) -> None:
+def check_head(path: Path, label: str) -> None:
     """Raise RecordingError for what cannot be a recording, or one of a newer rerun."""
     try:
         with open(path, "rb") as file:
             head = file.read(12)
     except OSError as error:
-        raise RecordingError(f"cannot read {path}: {error.strerror.lower()}") from None
+        raise RecordingError(f"cannot read {label}: {(error.strerror or str(error)).lower()}") from None
     if not head:
-        raise RecordingError(f"{path} is empty")
+        raise RecordingError(f"{label} is empty")
     if head[:4] != MAGIC:
-        raise RecordingError(f"{path} is not a Rerun recording")
+        raise RecordingError(f"{label} is not a Rerun recording")
     if len(head) < 12:
-        raise RecordingError(f"{path} was cut off before anything was recorded")
+        raise RecordingError(f"{label} was cut off before anything was recorded")
     if (head[4], head[5]) > NEWEST:
         raise RecordingError(
-            f"{path} was written by Rerun {head[4]}.{head[5]}; this sailviz reads files up to {NEWEST[0]}.{NEWEST[1]}"
+            f"{label} was written by Rerun {head[4]}.{head[5]}; this sailviz reads files up to {NEWEST[0]}.{NEWEST[1]}"
         )
 
 
@@ -249,69 +291,3 @@ def whole_messages(path: Path) -> int:
                 break
             end += FRAME + length
     return end
-
-
-def latest_static(batches: list[pa.RecordBatch]) -> dict[str, pa.Array]:
-    """Of static columns the value logged last: row ids count up in time."""
-    latest: dict[str, tuple[bytes, pa.Array]] = {}
-    for batch in batches:
-        for row, row_id in enumerate(batch.column(ROW_ID).to_pylist()):
-            for name in batch.schema.names:
-                if name == ROW_ID or not batch.column(name)[row].is_valid:
-                    continue
-                if name not in latest or row_id > latest[name][0]:
-                    latest[name] = (row_id, batch.column(name).slice(row, 1))
-    return {name: value for name, (_, value) in latest.items()}
-
-
-def group_by_columns(batches: list[pa.RecordBatch]) -> list[pa.Table]:
-    """Batches of the same columns as one table each, rows in order of the first timeline."""
-    groups: dict[tuple, list] = {}
-    for batch in batches:
-        names = tuple(sorted(name for name in batch.schema.names if name != ROW_ID))
-        groups.setdefault(names, []).append(pa.Table.from_batches([batch.select(names).replace_schema_metadata(None)]))
-    return [in_order(pa.concat_tables([strip(table) for table in tables])) for tables in groups.values()]
-
-
-def strip(table: pa.Table) -> pa.Table:
-    """Without metadata on the fields, so that tables of different chunks can be joined."""
-    return table.cast(pa.schema([pa.field(field.name, field.type) for field in table.schema]))
-
-
-def in_order(table: pa.Table) -> pa.Table:
-    for name in (*TIMELINES, *table.column_names):
-        if name in table.column_names and not is_component(table[name].type):
-            index = table[name].cast(pa.int64()).to_numpy()
-            return table if np.all(index[1:] >= index[:-1]) else table.take(np.argsort(index, kind="stable"))
-    return table
-
-
-def is_component(kind: pa.DataType) -> bool:
-    return pa.types.is_list(kind) or pa.types.is_large_list(kind)
-
-
-def to_numpy(column) -> np.ndarray:
-    """A component column with k values a row -> (n,) for k = 1, (n, k) for k > 1, objects where rows differ in k."""
-    column = column.combine_chunks() if isinstance(column, pa.ChunkedArray) else column
-    rows = len(column)
-    counts = np.asarray(column.value_lengths().fill_null(0))
-    if not np.all(counts == 1):
-        same = rows and np.all(counts == counts[0])
-        if not same:
-            values = np.empty(rows, object)
-            values[:] = [to_numpy_values(pa.array(row.values)) if row.is_valid else None for row in column]
-            return values
-    values = to_numpy_values(column.flatten())
-    return values if rows and counts[0] == 1 else values.reshape(rows, counts[0] if rows else 0, *values.shape[1:])
-
-
-def to_numpy_values(values: pa.Array) -> np.ndarray:
-    """Arrow values -> numpy; fixed-size lists become a further dimension, strings and structures objects."""
-    if pa.types.is_fixed_size_list(values.type):
-        inner = to_numpy_values(values.flatten())
-        return inner.reshape(len(values), values.type.list_size, *inner.shape[1:])
-    if pa.types.is_string(values.type) or pa.types.is_nested(values.type):
-        objects = np.empty(len(values), object)
-        objects[:] = values.to_pylist()
-        return objects
-    return values.to_numpy(zero_copy_only=False)

@@ -9,6 +9,7 @@ import os
 import socket
 import sys
 import webbrowser
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from urllib.parse import quote, urlsplit
@@ -52,6 +53,7 @@ class Memory:
 
 VIEWER = Viewer()
 WEB = Web()
+Sink = str | os.PathLike[str] | Viewer | Web | Connect | Memory  # as a user gives it
 
 
 @dataclass(frozen=True)
@@ -62,58 +64,80 @@ class File:
     part: Path
 
     @staticmethod
-    def reserve(path) -> File:
+    def reserve(path: str | os.PathLike[str]) -> File:
         """Claim a path: the growing file is made at once, so that what cannot be written fails at once."""
-        path = Path(path)
-        if path.is_dir():
-            raise RecordingError(f"cannot write the recording {path}: it is a directory")
-        if not path.parent.is_dir():
-            raise RecordingError(f"cannot write the recording {path}: there is no directory {path.parent}")
-        part = path.with_name(f".{path.name}.{os.getpid()}.part")
+        final = Path(path)
+        if final.is_dir():
+            raise RecordingError(f"cannot write the recording {final}: it is a directory")
+        if not final.parent.is_dir():
+            raise RecordingError(f"cannot write the recording {final}: there is no directory {final.parent}")
+        part = final.with_name(f".{final.name}.{os.getpid()}.part")
         try:
             part.touch()
         except OSError as error:
-            raise RecordingError(f"cannot write the recording {path}: {error.strerror.lower()}") from None
-        return File(path, part)
+            raise RecordingError(f"cannot write the recording {final}: {reason(error)}") from None
+        return File(final, part)
 
     def publish(self) -> None:
+        """Give the file its name."""
         try:
             os.replace(self.part, self.path)
         except OSError as error:
-            raise RecordingError(f"cannot write the recording {self.path}: {error.strerror.lower()}") from None
+            raise RecordingError(f"cannot write the recording {self.path}: {reason(error)}") from None
 
     def discard(self) -> None:
+        """Leave nothing of it."""
         self.part.unlink(missing_ok=True)
 
 
-def resolve(sinks) -> list:
+Opened = File | Viewer | Web | Connect | Memory | str
+
+
+def reason(error: OSError) -> str:
+    """Why the system refused, in its words."""
+    return (error.strerror or str(error)).lower()
+
+
+def resolve(sinks: Sequence[Sink]) -> list[Opened]:
     """Sinks as a user gives them -> File, Viewer, Web, Connect, Memory or STDOUT. RecordingError for anything else."""
-    if not sinks:
-        raise RecordingError("a recording needs somewhere to go: a path, VIEWER, WEB, Connect(url), Memory() or '-'")
-    wanted = [sink if isinstance(sink, Viewer | Web | Connect | Memory) or sink == STDOUT else None for sink in sinks]
-    if len(sinks) > 1 and any(isinstance(sink, Memory) or sink == STDOUT for sink in wanted):
-        raise RecordingError("standard output and memory each take a recording alone; other sinks can be combined")
-    if sum(isinstance(sink, Viewer | Web) for sink in wanted) > 1:
-        raise RecordingError("a recording goes to one viewer at a time: choose the native one or the browser")
-    for sink, given in zip(wanted, sinks, strict=True):
-        if sink is None and not isinstance(given, str | os.PathLike):
-            raise RecordingError(
-                f"a recording cannot go to {given!r}: give a path, VIEWER, WEB, Connect(url), Memory() or '-'"
-            )
-    paths = [Path(given).resolve() for sink, given in zip(wanted, sinks, strict=True) if sink is None]
-    if len(set(paths)) < len(paths):
-        raise RecordingError(f"the same file is given twice: {max(paths, key=paths.count)}")
+    wanted = [wish(sink) for sink in sinks]
+    check_together(sinks, wanted)
     for sink in wanted:
         if isinstance(sink, Connect):
             check_answer(sink.url)
-    resolved = []
+    resolved: list[Opened] = []
     try:
-        for sink, given in zip(wanted, sinks, strict=True):
-            resolved.append(File.reserve(given) if sink is None else sink)
+        for sink in wanted:
+            resolved.append(File.reserve(sink) if isinstance(sink, Path) else sink)
     except RecordingError:
         discard(resolved)
         raise
     return resolved
+
+
+Wanted = Path | Viewer | Web | Connect | Memory | str
+
+
+def wish(given: Sink) -> Wanted:
+    """What a user means: a Path for a file, STDOUT, or the sink itself. RecordingError for what is no sink."""
+    if isinstance(given, Viewer | Web | Connect | Memory):
+        return given
+    if isinstance(given, str | os.PathLike):
+        return STDOUT if given == STDOUT else Path(given)
+    raise RecordingError(f"a recording cannot go to {given!r}: give a path, VIEWER, WEB, Connect(url), Memory() or '-'")
+
+
+def check_together(sinks: Sequence[Sink], wanted: Sequence[Wanted]) -> None:
+    """Raise RecordingError for sinks that exclude each other, or none at all."""
+    if not sinks:
+        raise RecordingError("a recording needs somewhere to go: a path, VIEWER, WEB, Connect(url), Memory() or '-'")
+    if len(sinks) > 1 and any(isinstance(sink, Memory) or sink == STDOUT for sink in wanted):
+        raise RecordingError("standard output and memory each take a recording alone; other sinks can be combined")
+    if sum(isinstance(sink, Viewer | Web) for sink in wanted) > 1:
+        raise RecordingError("a recording goes to one viewer at a time: choose the native one or the browser")
+    paths = [path.resolve() for path in wanted if isinstance(path, Path)]
+    if len(set(paths)) < len(paths):
+        raise RecordingError(f"the same file is given twice: {max(paths, key=paths.count)}")
 
 
 def check_answer(url: str) -> None:
@@ -127,16 +151,19 @@ def check_answer(url: str) -> None:
         raise RecordingError(f"no viewer answers at {url}: {error.strerror or error}") from None
 
 
-def discard(sinks) -> None:
+def discard(sinks: Sequence[Opened]) -> None:
     """Leave nothing of a recording that never began."""
     for sink in sinks:
         if isinstance(sink, File):
             sink.discard()
 
 
-def attach(stream: rr.RecordingStream, sinks: list):
+Attached = rr.MemoryRecording | rr.GrpcServerSink | None
+
+
+def attach(stream: rr.RecordingStream, sinks: Sequence[Opened]) -> Attached:
     """Point a stream at its sinks -> what is needed later: the memory recording, or the data server."""
-    if sinks == [STDOUT]:
+    if list(sinks) == [STDOUT]:
         if sys.stdout.isatty():
             raise RecordingError(
                 "a recording on standard output must be piped, e.g. `| rerun -`, not shown on a terminal"
@@ -151,9 +178,10 @@ def attach(stream: rr.RecordingStream, sinks: list):
         raise RecordingError(f"cannot open the recording's sink: {str(error).splitlines()[0]}") from None
 
 
-def open_sinks(stream: rr.RecordingStream, sinks: list):
+def open_sinks(stream: rr.RecordingStream, sinks: Sequence[Opened]) -> rr.GrpcServerSink | None:
     """Files, viewers and a browser's server, all at once -> the server, None without one."""
-    targets, server = [], None
+    targets: list[rr.FileSink | rr.GrpcSink | rr.GrpcServerSink] = []
+    server: rr.GrpcServerSink | None = None
     for sink in sinks:
         if isinstance(sink, File):
             targets.append(rr.FileSink(sink.part))
@@ -162,12 +190,12 @@ def open_sinks(stream: rr.RecordingStream, sinks: list):
         elif isinstance(sink, Viewer):
             rr.spawn(port=sink.port, connect=False, hide_welcome_screen=True, executable_path=viewer_binary())
             targets.append(rr.GrpcSink(f"rerun+http://127.0.0.1:{sink.port}/proxy"))
-        else:
+        elif isinstance(sink, Web):
             server = rr.GrpcServerSink("127.0.0.1", sink.data_port)
             targets.append(server)
     stream.set_sinks(*targets)
     for sink in sinks:
-        if isinstance(sink, Web):
+        if isinstance(sink, Web) and server is not None:
             rr.serve_web_viewer(web_port=sink.port, open_browser=False, connect_to=server.uri)
             if sink.open_browser:
                 webbrowser.open(web_address(sink, server))  # rerun's own address would open in the light theme
@@ -181,6 +209,6 @@ def viewer_binary() -> str:
     return str(Path(rerun_cli.__file__).parent / ("rerun.exe" if os.name == "nt" else "rerun"))
 
 
-def web_address(sink: Web, server) -> str:
+def web_address(sink: Web, server: rr.GrpcServerSink) -> str:
     """What to type into a browser to see the recording."""
     return f"http://127.0.0.1:{sink.port}/?url={quote(server.uri, safe='')}&theme=dark"

@@ -7,21 +7,23 @@ recording does not depend on the blocks in which the run arrived.
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 import rerun as rr
+from numpy.typing import ArrayLike
 
 from sailviz.constants import YEAR
 from sailviz.errors import RecordingError
-from sailviz.run.arrays import COLUMNS, Run
+from sailviz.run.arrays import COLUMNS, Run, Setting
 
 LONGEST = 2**63 / 1e9  # s that a timeline of 64-bit nanoseconds can count: 292 years
 
 
-def take(run: Run, index) -> Run:
+def take(run: Run, index: slice | np.ndarray) -> Run:
     """The rows `index` (a slice or ints into this block) of a run. `first` and `events` stay those of the block."""
 
-    def pick(part):
+    def pick(part: Any) -> Any:
         if isinstance(part, np.ndarray):
             return part[index]
         if isinstance(part, dict):
@@ -88,10 +90,10 @@ def check_duration(run: Run) -> None:
         )
 
 
-def time_columns(run_setting, number, time) -> list[rr.TimeColumn]:
+def time_columns(setting: Setting, number: ArrayLike, time: ArrayLike) -> list[rr.TimeColumn]:
     """The columns step, sim_time and, where the scene has an epoch, utc. number (n,) int, time (n,) s."""
     ns = np.round(np.asarray(time, float) * 1e9).astype(np.int64).astype("timedelta64[ns]")
     columns = [rr.TimeColumn("step", sequence=np.asarray(number, np.int64)), rr.TimeColumn("sim_time", duration=ns)]
-    if run_setting.epoch is not None:
-        columns.append(rr.TimeColumn("utc", timestamp=run_setting.epoch.astype("datetime64[ns]") + ns))
+    if setting.epoch is not None:
+        columns.append(rr.TimeColumn("utc", timestamp=setting.epoch.astype("datetime64[ns]") + ns))
     return columns

@@ -6,21 +6,22 @@ import signal
 import sys
 import threading
 import time as clock
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Self
+from types import TracebackType
+from typing import Any, Self
 
-import numpy as np
 import rerun as rr
+from numpy.typing import ArrayLike
 from rerun.error_utils import catch_and_log_exceptions
 
-from sailviz.errors import PropagationError, RecordingError
-from sailviz.recording import contract, timelines
-from sailviz.recording.drawing.drawing import Drawing
-from sailviz.recording.sinks import File, Memory, Web, attach, discard, resolve, web_address
-from sailviz.run.arrays import Event, Run
+from sailviz.errors import RecordingError
+from sailviz.recording import timelines
+from sailviz.recording.growing import GrowingRecording, why
+from sailviz.recording.sinks import Sink, discard, resolve
+from sailviz.run.arrays import Run
 
 BLOCK = 16_384  # rows sent at once: large enough for speed, small enough for memory
 
@@ -35,6 +36,7 @@ class Recorded:
     paths: tuple[Path, ...]
     seconds: float  # of wall time inside the recorder
     url: str = ""
+    stream: rr.RecordingStream | None = field(default=None, repr=False, compare=False)  # which serves the browser
 
     def serve(self) -> None:
         """Keep a recording for the browser alive until Ctrl-C; returns at once for every other sink."""
@@ -44,10 +46,11 @@ class Recorded:
             while True:
                 clock.sleep(3600)
         except KeyboardInterrupt:
-            self._stream.disconnect()
+            if self.stream is not None:
+                self.stream.disconnect()
 
 
-def record(run: Run | Iterable[Run], sink, *more_sinks) -> Recorded:
+def record(run: Run | Iterable[Run], sink: Sink, *more_sinks: Sink) -> Recorded:
     """Record a run, or the consecutive blocks of one, to a path, VIEWER, WEB, Connect(url), Memory() or "-".
 
     Several sinks may be given (a file and a viewer, say). With WEB this returns when interrupted.
@@ -71,33 +74,35 @@ class Recorder:
     complete = False, and the exception goes on. When it raises earlier, nothing is left behind.
     """
 
-    def __init__(self, *sinks):
+    def __init__(self, *sinks: Sink):
+        """sinks : as in `record`. Raises RecordingError where one cannot be written."""
         self._sinks = resolve(sinks)
-        self._stream = None
-        self._setting = None
-        self._rows = 0
-        self._ended = ""
-        self._events: list[Event] = []  # those that lie after the last row seen
-        self._last: Run | None = None  # the last row seen
+        self._growing: GrowingRecording | None = None
         self._seconds = 0.0
         self.recorded: Recorded | None = None
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, kind, error, traceback) -> bool:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, traceback: TracebackType | None
+    ) -> None:
         if self.recorded is not None:
-            return False
+            return
         if kind is None:
             self.finish()
         elif self._last is None:
             self._abandon()
         else:
             try:
-                self.finish(note=self._why(error), complete=False)
+                self.finish(note=why(error, self._last), complete=False)
             except Exception:
                 self._abandon()  # the first error is the one to tell
-        return False
+
+    @property
+    def _last(self) -> Run | None:
+        """The last row that was written."""
+        return None if self._growing is None else self._growing.last
 
     @property
     def time(self) -> float:
@@ -110,137 +115,58 @@ class Recorder:
         """
         if self.recorded is not None:
             raise RecordingError("this recording is finished; a block came after its end")
-        if run.first != self._rows:
+        rows = 0 if self._growing is None else self._growing.rows
+        if run.first != rows:
             raise RecordingError(
-                f"the blocks of a run must follow each other: row {self._rows} was due, row {run.first} came"
+                f"the blocks of a run must follow each other: row {rows} was due, row {run.first} came"
             )
         timelines.check_duration(run)
         started = clock.perf_counter()
-        with _not_interrupted(), catch_and_log_exceptions("recording", strict=True):
+        with not_interrupted(), catch_and_log_exceptions("recording", strict=True):
             for start in range(0, len(run), BLOCK):
                 piece = timelines.take(run, slice(start, start + BLOCK))
-                self._add(replace(piece, first=run.first + start, events=run.events if start == 0 else ()))
+                piece = replace(piece, first=run.first + start, events=run.events if start == 0 else ())
+                if self._growing is None:
+                    self._growing = GrowingRecording(piece, self._sinks)
+                self._growing.add(piece)
         self._seconds += clock.perf_counter() - started
 
     def finish(self, note: str = "", complete: bool = True) -> Recorded:
         """Close the recording and give files their names. `note` becomes an event at the last row."""
         if self.recorded is not None:
             return self.recorded
-        if self._last is None:
+        growing, last = self._growing, self._last
+        if growing is None or last is None:
             self._abandon()
             raise RecordingError("there is nothing to record: the run has no rows")
         started = clock.perf_counter()
-        with _not_interrupted(), catch_and_log_exceptions("recording", strict=True):
-            if note:
-                self._events.append(self._event_now(note))
-            self._write_events(self._events, np.full(len(self._events), self._rows - 1))
-            self._drawing.finish(self._last)
-            self._write_scene(complete)
-            paths = self._close()
+        with not_interrupted(), catch_and_log_exceptions("recording", strict=True):
+            paths = growing.finish(last, note, complete)
         self._seconds += clock.perf_counter() - started
-        web = next((sink for sink in self._sinks if isinstance(sink, Web)), None)
         self.recorded = Recorded(
-            rows=self._rows,
+            rows=growing.rows,
             complete=complete,
-            identity=self._setting.identity,
+            identity=growing.identity,
             paths=paths,
             seconds=self._seconds,
-            url=web_address(web, self._attached) if web else "",
+            url=growing.url,
+            stream=growing.stream,
         )
-        object.__setattr__(self.recorded, "_stream", self._stream)
         return self.recorded
 
-    def _add(self, block: Run) -> None:
-        if self._stream is None:
-            self._open(block)
-        index = timelines.time_columns(self._setting, self._rows + np.arange(len(block)), block.time)
-        for entity, table in contract.tables(block).items():
-            if table:
-                self._stream.send_columns(entity, index, contract.columns(entity, table))
-        self._add_events(block)
-        self._drawing.add(block)
-        first = self._last is None
-        self._rows += len(block)
-        self._ended = block.ended
-        self._last = replace(timelines.take(block, slice(-1, None)), first=self._rows - 1, events=())
-        if first:
-            self._write_scene(complete=False)  # so that a recording cut off by a crash still says what it was
-        self._flush()
-
-    def _flush(self) -> None:
-        try:
-            self._stream.flush(timeout_sec=60)
-        except RuntimeError as error:
-            raise RecordingError(f"the recording could not be written: {str(error).splitlines()[0]}") from None
-
-    def _open(self, block: Run) -> None:
-        self._setting = setting = block.setting
-        # the viewer keeps one arrangement of views for each application: each scene needs its own
-        application = f"sailviz_{setting.family}_{setting.identity[:8]}"
-        stream = rr.RecordingStream(application, recording_id=setting.identity, send_properties=False)
-        stream.set_log_time_enabled(False)
-        stream.set_log_tick_enabled(False)
-        self._attached = attach(stream, self._sinks)
-        self._stream = stream
-        stream.send_recording_name(setting.title)
-        self._drawing = Drawing(stream, block)
-
-    def _add_events(self, block: Run) -> None:
-        """Write the events that have a row at or after them by now; keep the others."""
-        due = sorted([*self._events, *block.events], key=lambda event: event.time)
-        row = np.searchsorted(block.time, [event.time for event in due], side="left")
-        count = int(np.sum(row < len(block)))
-        self._write_events(due[:count], self._rows + row[:count])
-        self._events = due[count:]
-
-    def _write_events(self, events: list[Event], number) -> None:
-        if not events:
-            return
-        index = timelines.time_columns(self._setting, number, [event.time for event in events])
-        self._stream.send_columns("/events", index, contract.event_columns(events))
-        self._drawing.add_events(events, index)
-
-    def _event_now(self, name: str) -> Event:
-        last = self._last
-        return Event(name, float(last.time[0]), np.concatenate([last.position[0], last.velocity[0], last.mass]))
-
-    def _write_scene(self, complete: bool) -> None:
-        scene = contract.scene(self._setting, rows=self._rows, complete=complete, ended=self._ended)
-        self._stream.log("/scene", scene, static=True)
-
-    def _why(self, error: BaseException) -> str:
-        if isinstance(error, KeyboardInterrupt):
-            return f"interrupted at t = {self._last.time[0]:.6g} s ({self._last.time[0] / 86400:.4g} d)"
-        if isinstance(error, PropagationError):
-            return str(error)
-        return f"stopped by {type(error).__name__}: {error}"
-
-    def _close(self) -> tuple[Path, ...]:
-        if self._sinks and isinstance(self._sinks[0], Memory):
-            self._flush()
-            self._sinks[0].bytes = self._attached.drain_as_bytes()
-        if any(isinstance(sink, Web) for sink in self._sinks):
-            self._flush()  # disconnecting would stop the server; Recorded.serve does it
-        else:
-            self._stream.disconnect()
-        files = [sink for sink in self._sinks if isinstance(sink, File)]
-        for file in files:
-            file.publish()
-        return tuple(file.path for file in files)
-
     def _abandon(self) -> None:
-        if self._stream is not None:
-            self._stream.disconnect()
+        if self._growing is not None:
+            self._growing.stream.disconnect()
         discard(self._sinks)
 
 
 @contextmanager
-def _not_interrupted():
+def not_interrupted() -> Iterator[None]:
     """Hold back Ctrl-C while a block is written, so that every entity has the same rows; then let it through."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    pressed = []
+    pressed: list[bool] = []
     try:
         before = signal.signal(signal.SIGINT, lambda *_: pressed.append(True))
     except ValueError:  # inside a sub-interpreter
@@ -254,8 +180,10 @@ def _not_interrupted():
         raise KeyboardInterrupt
 
 
-def record_trajectory(time, position, velocity, sink, *more_sinks, **options):
-    """Record a trajectory from elsewhere with the same views as a simulated one -> Recorded.
+def record_trajectory(
+    time: ArrayLike, position: ArrayLike, velocity: ArrayLike, sink: Sink, *more_sinks: Sink, **options: Any
+) -> Recorded:
+    """Record a trajectory from elsewhere with the same views as a simulated one.
 
     time (n,) s, increasing; position (n, 3) m and velocity (n, 3) m/s, inertial, from the central body; sink as in
     `record`. The options are those of `trajectory`. Raises TrajectoryError (a ValueError) with every fault at once,

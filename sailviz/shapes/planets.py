@@ -60,4 +60,5 @@ def globe(map_jpeg: bytes, rows: int = 48, columns: int = 96) -> bytes:
     )
     visual = trimesh.visual.TextureVisuals(uv=uv, material=material)
     mesh = FlatMesh(ball.vertices, ball.faces, visual=visual, process=False)
-    return trimesh.exchange.gltf.export_glb(mesh.scene(), include_normals=True)
+    content: bytes = trimesh.exchange.gltf.export_glb(mesh.scene(), include_normals=True)
+    return content

@@ -16,10 +16,33 @@ with deferred("trimesh", "scipy.spatial", "scipy.optimize", "scipy.ndimage"):
     import trimesh
     from trimesh import Trimesh, creation
 
+__all__ = [
+    "Trimesh",
+    "ball",
+    "band",
+    "box",
+    "cap",
+    "circle",
+    "cylinder",
+    "disc",
+    "flat_sided",
+    "joined",
+    "moved",
+    "rod",
+    "scaled",
+    "sheet",
+    "surface_of_revolution",
+    "trimesh",
+    "tube",
+    "turned",
+]
+
 
 def joined(meshes: Sequence[Trimesh]) -> Trimesh:
     """Several meshes as one."""
-    return trimesh.util.concatenate(list(meshes))
+    whole = trimesh.util.concatenate(list(meshes))
+    assert isinstance(whole, Trimesh)  # as what is joined
+    return whole
 
 
 def moved(mesh: Trimesh, offset: ArrayLike) -> Trimesh:
@@ -33,6 +56,13 @@ def turned(mesh: Trimesh, angle: float) -> Trimesh:
     """A copy of a mesh, turned about z by an angle in rad."""
     copy = mesh.copy()
     copy.apply_transform(trimesh.transformations.rotation_matrix(angle, [0.0, 0.0, 1.0]))
+    return copy
+
+
+def scaled(mesh: Trimesh, factor: float) -> Trimesh:
+    """A copy of a mesh, larger about the origin by a factor."""
+    copy = mesh.copy()
+    copy.apply_scale(factor)
     return copy
 
 

@@ -23,7 +23,8 @@ def film_points(u: np.ndarray, v: np.ndarray, a: np.ndarray, b: np.ndarray) -> n
     drawn_in = 1 - SCALLOP * 4 * u * v / reach
     flat = (np.multiply.outer(u, a) + np.multiply.outer(v, b)) * drawn_in[..., None]
     depth = BILLOW * (27 * u * v * w * 0.9 + 4 * u * v * 0.35)
-    return flat + np.multiply.outer(depth, [0.0, 0.0, 1.0])
+    points: np.ndarray = flat + np.multiply.outer(depth, [0.0, 0.0, 1.0])
+    return points
 
 
 def quadrants() -> list[tuple[np.ndarray, np.ndarray]]:

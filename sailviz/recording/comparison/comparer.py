@@ -11,8 +11,9 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Container, Iterable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -21,21 +22,22 @@ from sailviz.recording.comparison.differences import (
     COVERED,
     RELATIVE,
     Difference,
-    _drawn,
     default_tolerance,
     difference,
+    drawn_difference,
 )
-from sailviz.recording.comparison.pairing import Pairing, _within
+from sailviz.recording.comparison.pairing import NONE, Pairing, within
 from sailviz.recording.comparison.result import Comparison
-from sailviz.recording.comparison.tables import Evidence, Table, evidence
+from sailviz.recording.comparison.tables import Evidence, Source, Table, evidence
 from sailviz.recording.comparison.tolerances import Tolerances
+from sailviz.recording.reader import EventRow
 from sailviz.run import resample
 from sailviz.words import duration
 
 
 def compare(
-    a,
-    b,
+    a: Source | Evidence,
+    b: Source | Evidence,
     *,
     rtol: float | Mapping[str, float] = 0.0,
     atol: float | Mapping[str, float] | None = None,
@@ -55,11 +57,12 @@ def compare(
     """
     if on not in ("sim_time", "step"):
         raise RecordingError(f"rows are paired on sim_time or on step, not on {on!r}")
-    a, b = evidence(a), evidence(b)
-    return _Comparer(a, b, Tolerances(atol, rtol), on, picture).result()
+    return Comparer(evidence(a), evidence(b), Tolerances(atol, rtol), on, picture).result()
 
 
-class _Comparer:
+class Comparer:
+    """One comparison, as it finds what differs."""
+
     def __init__(self, a: Evidence, b: Evidence, tolerances: Tolerances, on: str, picture: bool):
         self.a, self.b, self.tolerances, self.on = a, b, tolerances, on
         self.with_picture = picture
@@ -70,6 +73,7 @@ class _Comparer:
         self.interpolated = False
 
     def result(self) -> Comparison:
+        """Compare everything."""
         self._compare_facts()
         for entity in dict.fromkeys([*self.a.entities, *self.b.entities]):
             if self._in_both(entity, self.a.entities, self.b.entities, entity):
@@ -82,8 +86,7 @@ class _Comparer:
             self.a.label, self.b.label, tuple(self.quantities), tuple(self.faults), tuple(self.notes), picture, count
         )
 
-    # ------------------------------------------------------------ words
-    def _in_both(self, name, in_a, in_b, said) -> bool:
+    def _in_both(self, name: Any, in_a: Container[Any], in_b: Container[Any], said: str) -> bool:
         if name in in_a and name in in_b:
             return True
         self.faults.append(f"{said} is missing in {'B' if name in in_a else 'A'}")
@@ -104,20 +107,25 @@ class _Comparer:
         mu = "body_mu_m3_s2"
         if mu in one and mu in two and not math.isclose(one[mu], two[mu], rel_tol=1e-12):
             self.faults.append(f"gravitational parameter: {one[mu]:.12g} in A, {two[mu]:.12g} m³/s² in B")
-        if self.a.epoch != self.b.epoch:
-            told = ["none" if e.epoch is None else str(e.epoch.astype("datetime64[ms]")) for e in (self.a, self.b)]
-            self.faults.append(f"epoch: {told[0]} in A, {told[1]} in B")
+        self._compare_epochs()
         if one.get("identity") != two.get("identity") and "identity" in one and "identity" in two:
             self.notes.append(f"made from different scenes: {one['identity']} and {two['identity']}")
         if one.get("versions") != two.get("versions") and "versions" in one and "versions" in two:
             self.notes.append(f"made by different versions: {one['versions']} and {two['versions']}")
+        self._note_thinned(one.get("rows"), two.get("rows"))
+
+    def _compare_epochs(self) -> None:
+        if self.a.epoch != self.b.epoch:
+            told = ["none" if e.epoch is None else str(e.epoch.astype("datetime64[ms]")) for e in (self.a, self.b)]
+            self.faults.append(f"epoch: {told[0]} in A, {told[1]} in B")
+
+    def _note_thinned(self, rows_a: int | None, rows_b: int | None) -> None:
         for side, facts in (("A", self.a), ("B", self.b)):
             if facts.thinned:
                 self.notes.append(f"{side} holds only some of the rows of its run: the others are not compared")
-        if (self.a.thinned or self.b.thinned) and one.get("rows") != two.get("rows"):
-            self.faults.append(f"rows: the run of A has {one.get('rows')}, that of B {two.get('rows')}")
+        if (self.a.thinned or self.b.thinned) and rows_a != rows_b:
+            self.faults.append(f"rows: the run of A has {rows_a}, that of B {rows_b}")
 
-    # ------------------------------------------------------------ columns
     def _compare_entity(self, entity: str, a: Table, b: Table) -> None:
         if not len(a) or not len(b):
             if len(a) != len(b):
@@ -149,11 +157,11 @@ class _Comparer:
         if len(a) == len(b) and np.max(np.abs(a.time - b.time)) <= tolerance:
             rows = np.arange(len(a))
             return Pairing(rows, rows)
-        if (self.a.thinned or self.b.thinned) and (rows := _within(a, b, tolerance)) is not None:
-            return Pairing(*rows)
+        if (self.a.thinned or self.b.thinned) and (both := within(a, b, tolerance)) is not None:
+            return Pairing(*both)
         return self._pair_by_interpolation(entity, a, b, tolerance)
 
-    def _pair_by_interpolation(self, entity, a: Table, b: Table, tolerance) -> Pairing | None:
+    def _pair_by_interpolation(self, entity: str, a: Table, b: Table, tolerance: float) -> Pairing | None:
         for side, table in (("A", a), ("B", b)):
             if np.any(np.diff(table.time) <= 0):
                 self._fault(f"{entity}: the times of {side} do not increase, so rows cannot be paired; compare on step")
@@ -174,15 +182,15 @@ class _Comparer:
                 f"the grids differ: {len(a):,} rows in A, {len(b):,} in B; {finer} was interpolated at {len(times):,} "
                 f"times of the other, and default tolerances cover {COVERED:g} times what that adds"
             )
-        return Pairing(None, None, times, finer)
+        return Pairing(NONE, NONE, times, finer)
 
-    def _values(self, side: str, name: str, table: Table, pairing: Pairing):
+    def _values(self, side: str, name: str, table: Table, pairing: Pairing) -> np.ndarray:
         values = table.columns[name]
-        if not pairing.interpolated:
-            return values[pairing.rows_a if side == "A" else pairing.rows_b]
+        if pairing.times is None:
+            return np.asarray(values[pairing.rows_a if side == "A" else pairing.rows_b])
         if pairing.finer == side:
-            return resample.at(pairing.times, name, table.time, values, table.columns)
-        return values[np.searchsorted(table.time, pairing.times)]
+            return np.asarray(resample.at(pairing.times, name, table.time, values, table.columns))
+        return np.asarray(values[np.searchsorted(table.time, pairing.times)])
 
     def _compare_column(self, entity: str, name: str, a: Table, b: Table, pairing: Pairing) -> None:
         if name == "time_s" and pairing.interpolated:  # as many rows at other times
@@ -190,7 +198,7 @@ class _Comparer:
             pairing = Pairing(rows, rows)
         one, two = self._values("A", name, a, pairing), self._values("B", name, b, pairing)
         if one.shape != two.shape:
-            self.faults.append(f"{entity}:{name} has {_shape(one)} in A, {_shape(two)} in B")
+            self.faults.append(f"{entity}:{name} has {components(one)} in A, {components(two)} in B")
             return
         atol, rtol = self.tolerances.of(entity, name)
         interpolation = 0.0
@@ -203,14 +211,17 @@ class _Comparer:
         found = difference(f"{entity}:{name}", one, two, atol, rtol)
         if found.row >= 0:
             row = found.row
-            time = pairing.times[row] if pairing.interpolated else a.time[pairing.rows_a[row]]
-            at = np.searchsorted(a.time, time) if pairing.interpolated else pairing.rows_a[row]
-            found = replace(found, row=int(a.step[min(at, len(a) - 1)]), time=float(time))
+            if pairing.times is None:
+                at = int(pairing.rows_a[row])
+                time = float(a.time[at])
+            else:
+                time = float(pairing.times[row])
+                at = min(int(np.searchsorted(a.time, time)), len(a) - 1)
+            found = replace(found, row=int(a.step[at]), time=time)
         self.quantities.append(replace(found, interpolation=interpolation))
 
-    # ------------------------------------------------------------ events, views, picture
     def _compare_events(self) -> None:
-        one, two = _numbered(self.a.events), _numbered(self.b.events)
+        one, two = numbered(self.a.events), numbered(self.b.events)
         for key in dict.fromkeys([*one, *two]):
             name, number = key
             event = one.get(key) or two[key]
@@ -220,7 +231,7 @@ class _Comparer:
         both = [(one[key], two[key]) for key in one if key in two]
         if not both:
             return
-        columns = {
+        columns: dict[str, Callable[[EventRow], Any]] = {
             "time_s": lambda event: event.time,
             "position_m": lambda event: event.state[:3],
             "velocity_m_s": lambda event: event.state[3:6],
@@ -261,7 +272,9 @@ class _Comparer:
             self.notes.append("the picture is not compared: it is drawn on other rows")
             return (), 0
         one, two = self.a.picture(), dict(self.b.picture())
-        differences, count, lost = [], 0, []
+        differences: list[Difference] = []
+        lost: list[str] = []
+        count = 0
         state = self.a.table("/state") if "/state" in self.a.entities else None
         for entity, columns in one:
             if entity not in two:
@@ -272,7 +285,9 @@ class _Comparer:
                 if not self._in_both(name, columns, others, f"{entity}:{name} of the picture"):
                     continue
                 count += 1
-                found = _drawn(f"{entity}:{name}", columns[name], others[name], self.tolerances.of(entity, name))
+                found = drawn_difference(
+                    f"{entity}:{name}", columns[name], others[name], self.tolerances.of(entity, name)
+                )
                 if not found.equal:
                     if state is not None and found.row >= 0:
                         found = replace(found, time=float(np.interp(found.row, state.step, state.time)))
@@ -283,9 +298,9 @@ class _Comparer:
         return tuple(differences), count
 
 
-def _numbered(events) -> dict:
+def numbered(events: Iterable[EventRow]) -> dict[tuple[str, int], EventRow]:
     """Events by name and how many of that name came before."""
-    count: Counter = Counter()
+    count: Counter[str] = Counter()
     found = {}
     for event in events:
         name = re.sub(r" at t = .*", "", event.name)  # the note of an interrupted run says when
@@ -294,5 +309,6 @@ def _numbered(events) -> dict:
     return found
 
 
-def _shape(values) -> str:
+def components(values: np.ndarray) -> str:
+    """How many numbers stand in a row."""
     return f"{values.shape[1]} components" if values.ndim > 1 else "1 component"

@@ -8,34 +8,17 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pyarrow as pa
 
-from sailviz.recording.reader import is_component
+from sailviz.recording.comparison.tables import plain
+from sailviz.recording.entity import is_component
 from sailviz.run import resample
+from sailviz.words import unit_of
 
 RELATIVE = 1e-9  # default tolerance: this part of the column's largest value
 ROUNDING = 1e-14  # and no less than this for numbers of order one: angles, directions, ratios
 FLOAT32 = 1e-5  # of the picture's float32 columns: their rounding, and what a camera can tell
 COVERED = 2.0  # how many times the estimated cost of interpolation a default tolerance covers
-UNITS = {
-    "_m_s2": "m/s²",
-    "_m_s": "m/s",
-    "_kg_m3": "kg/m³",
-    "_m3": "1/m³",
-    "_N_m": "N/m",
-    "_m": "m",
-    "_s": "s",
-    "_kg": "kg",
-    "_rad": "rad",
-    "_Pa": "Pa",
-    "_V": "V",
-    "_K": "K",
-    "_N": "N",
-}
+Drawn = tuple[np.ndarray, pa.Array]  # steps and values of a column of the picture
 COMPONENTS = {"quaternion": "xyzw", "acceleration_rtn_m_s2": "rtn"}
-
-
-def unit_of(column: str) -> str:
-    """position_m -> m; "" for a pure number."""
-    return next((unit for ending, unit in UNITS.items() if column.endswith(ending)), "")
 
 
 def component_name(column: str, index: tuple[int, ...]) -> str:
@@ -68,10 +51,11 @@ class Difference:
 
     @property
     def equal(self) -> bool:
+        """Whether no value differs by more than is allowed."""
         return self.beyond == 0
 
 
-def default_tolerance(name: str, values) -> float:
+def default_tolerance(name: str, values: np.ndarray) -> float:
     """1e-9 of the column's largest value, and no less than rounding where numbers are of order one."""
     if values.dtype.kind != "f":
         return 0.0
@@ -101,17 +85,17 @@ def difference(quantity: str, a: np.ndarray, b: np.ndarray, atol: float, rtol: f
     found = Difference(quantity, unit, largest, float(allowed[index]), int(beyond.sum()), a.size)
     if largest == 0:
         return found
-    values = (_plain(a[index]), _plain(b[index]))
+    values = (plain(a[index]), plain(b[index]))
     return replace(found, row=index[0], component=component_name(name, index[1:]), a=values[0], b=values[1])
 
 
-def _drawn(quantity: str, a, b, tolerances) -> Difference:
+def drawn_difference(quantity: str, a: Drawn, b: Drawn, tolerances: tuple[float | None, float]) -> Difference:
     """The difference of two columns of the picture: (steps, Arrow column) each. Structure and whole numbers count
     exactly, float32 to 1e-5, float64 to 1e-9 of the largest value.
     """
     (steps_a, values_a), (steps_b, values_b) = a, b
-    flat_a, structure_a, owner = _flat(values_a)
-    flat_b, structure_b, _ = _flat(values_b)
+    flat_a, structure_a, owner = flattened(values_a)
+    flat_b, structure_b, _ = flattened(values_b)
     same = len(structure_a) == len(structure_b) and all(map(np.array_equal, structure_a, structure_b))
     if not np.array_equal(steps_a, steps_b) or not same or flat_a.shape != flat_b.shape or flat_a.dtype != flat_b.dtype:
         said = (f"{len(steps_a)} rows, {len(flat_a)} values", f"{len(steps_b)} rows, {len(flat_b)} values")
@@ -134,9 +118,10 @@ def _drawn(quantity: str, a, b, tolerances) -> Difference:
     return replace(found, row=int(steps_a[row]), component="")
 
 
-def _flat(column: pa.Array) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
+def flattened(column: pa.Array) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
     """An Arrow column as flat values, the lengths of its lists level by level, and the row of each value."""
-    structure, owner = [], np.arange(len(column))
+    structure: list[np.ndarray] = []
+    owner = np.arange(len(column))
     while is_component(column.type) or pa.types.is_fixed_size_list(column.type):
         if is_component(column.type):
             lengths = np.asarray(column.value_lengths().fill_null(0))
@@ -148,7 +133,3 @@ def _flat(column: pa.Array) -> tuple[np.ndarray, list[np.ndarray], np.ndarray]:
     if pa.types.is_integer(column.type) or pa.types.is_floating(column.type) or pa.types.is_boolean(column.type):
         return column.to_numpy(zero_copy_only=False), structure, owner
     return np.array([repr(value) for value in column.to_pylist()]), structure, owner
-
-
-def _plain(value):
-    return value.item() if isinstance(value, np.generic) else value

@@ -5,15 +5,15 @@ written.
 from __future__ import annotations
 
 import hashlib
-from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
 
-from sailviz.recording.reader import ROW_ID, is_component, latest_static, read, strip
+from sailviz.recording.entity import ROW_ID, is_component, latest_static, strip
+from sailviz.recording.reader import FilePath, Recording, read
 
 
-def digest(path) -> str:
+def digest(path: FilePath | Recording) -> str:
     """SHA-256, hexadecimal, over the contents of every entity of a recording.
 
     Row ids, chunks, the recording's id, wall-clock timelines and the layout of the views do not count: the same scene
@@ -25,12 +25,12 @@ def digest(path) -> str:
     return total.hexdigest()
 
 
-def digest_by_entity(path) -> dict[str, str]:
+def digest_by_entity(path: FilePath | Recording) -> dict[str, str]:
     """Hashes of the entities of a recording, to find out where two of them differ. "/state" -> hexadecimal."""
-    recording = read(Path(path))
-    temporal: dict[tuple[str, tuple[str, ...]], list] = {}
-    static: dict[str, list] = {}
-    for chunk in recording._stream():
+    recording = read(path)
+    temporal: dict[tuple[str, tuple[str, ...]], list[pa.Table]] = {}
+    static: dict[str, list[pa.RecordBatch]] = {}
+    for chunk in recording.chunks():
         if chunk.entity_path.startswith("/__"):
             continue
         batch = chunk.to_record_batch()
@@ -59,16 +59,18 @@ def in_order_of_time(table: pa.Table) -> pa.Table:
 
 
 def sorted_already(keys: list[np.ndarray]) -> bool:
+    """Whether the first timeline alone counts up."""
     return bool(np.all(keys[0][1:] > keys[0][:-1]))
 
 
-def hash_table(state, table: pa.Table) -> None:
+def hash_table(state: hashlib._Hash, table: pa.Table) -> None:
+    """Feed the columns of a table into a hash."""
     for name in table.column_names:
         state.update(f"{name} {table[name].type}".encode())
         hash_values(state, table[name].combine_chunks())
 
 
-def hash_values(state, values) -> None:
+def hash_values(state: hashlib._Hash, values: pa.Array | pa.ChunkedArray) -> None:
     """Feed the bits of an Arrow array, without what its memory happens to look like, into a hash."""
     if isinstance(values, pa.ChunkedArray):
         values = pa.concat_arrays(values.chunks) if values.num_chunks else pa.array([], values.type)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
+from typing import Any
 
 from sailviz.recording.comparison.differences import Difference
 from sailviz.words import duration
@@ -27,6 +28,7 @@ class Comparison:
 
     @property
     def equal(self) -> bool:
+        """Whether nothing differs by more than is allowed."""
         return not self.faults and not self.picture and all(d.equal for d in self.quantities)
 
     @property
@@ -43,8 +45,8 @@ class Comparison:
 
     def table(self) -> str:
         """Every quantity on a line of its own, the worst place of each, aligned."""
-        rows = [("", "quantity", "largest difference", "allowed", "where", "when", "A", "B")]
-        rows += [_line(d) for d in (*self.quantities, *self.picture[:SHOWN])]
+        rows: list[tuple[str, ...]] = [("", "quantity", "largest difference", "allowed", "where", "when", "A", "B")]
+        rows += [line_of(d) for d in (*self.quantities, *self.picture[:SHOWN])]
         widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
         right = {2, 3}
         return "\n".join(
@@ -73,11 +75,11 @@ class Comparison:
         lines += [self.table(), *(f"DIFFERENT  {fault}" for fault in self.faults), self.verdict()]
         return "\n".join(lines)
 
-    def to_dict(self) -> dict:
+    def to_dict(self) -> dict[str, Any]:
         """Everything, ready for JSON: NaN and infinity become null and "inf"."""
 
-        def told(difference):
-            return {key: _json(value) for key, value in asdict(difference).items()} | {"equal": difference.equal}
+        def told(difference: Difference) -> dict[str, Any]:
+            return {key: json_number(value) for key, value in asdict(difference).items()} | {"equal": difference.equal}
 
         return {
             "equal": self.equal,
@@ -90,14 +92,17 @@ class Comparison:
         }
 
 
-def _json(value):
+def json_number(value: Any) -> Any:
+    """NaN and infinity, for which JSON has no word, as null and "inf"."""
     if isinstance(value, float) and not math.isfinite(value):
         return None if math.isnan(value) else str(value)
     return value
 
 
-def _line(d: Difference) -> tuple[str, ...]:
-    def number(value, digits=3):
+def line_of(d: Difference) -> tuple[str, ...]:
+    """One line of the table."""
+
+    def number(value: float | str, digits: int = 3) -> str:
         if isinstance(value, str):
             return value if len(value) < 30 else value[:27] + "..."
         return f"{value:.{digits}g}" if isinstance(value, float) else str(value)

@@ -4,34 +4,39 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
 from sailviz.errors import RecordingError
-from sailviz.recording.reader import (
+from sailviz.recording.entity import (
     TIMELINES,
     Entity,
-    EventRow,
-    Recording,
     group_by_columns,
     is_component,
     latest_static,
-    read,
     short,
     to_numpy,
 )
+from sailviz.recording.reader import EventRow, FilePath, Recording, read
 from sailviz.run.arrays import Run
+
+Source = Recording | Run | FilePath  # what can be compared and exported
 
 TRUTH = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/approximation")
 APART = (*TRUTH, "/events", "/scene", "/about")  # not part of the picture
-FACTS = ("title", "family", "body", "body_mu_m3_s2", "craft_kind", "rows", "complete", "ended", "identity", "versions")
-FACTS += ("body_radius_m", "accuracy", "text")
+FACTS: tuple[str, ...] = ("title", "family", "body", "body_mu_m3_s2", "craft_kind", "rows", "complete", "ended")
+FACTS += ("identity", "versions", "body_radius_m", "accuracy", "text")
+
+
+Drawn = tuple[str, dict[str, tuple[np.ndarray, pa.Array]]]  # an entity, and the steps and values of its columns
 
 
 @dataclass(frozen=True)
@@ -54,14 +59,14 @@ class Evidence:
     entities: tuple[str, ...]
     table: Callable[[str], Table]  # of an entity, read anew each time: a recording may be larger than memory
     events: tuple[EventRow, ...] = ()
-    facts: dict = field(default_factory=dict)
+    facts: dict[str, Any] = field(default_factory=dict)
     epoch: np.datetime64 | None = None
     thinned: bool = False  # holds only some of the rows of its run
-    views: Counter | None = None  # (kind, name, origin) -> how many
-    picture: Callable[[], Iterator[tuple[str, dict]]] | None = None  # (entity, name -> arrow column), one at a time
+    views: Counter[tuple[str, str, str]] | None = None  # (kind, name, origin) -> how many
+    picture: Callable[[], Iterator[Drawn]] | None = None  # (entity, name -> arrow column), one at a time
 
 
-def evidence(source, label: str = "") -> Evidence:
+def evidence(source: Source | Evidence, label: str = "") -> Evidence:
     """Recording, Run, or path of an .rrd or .npz file -> Evidence. RecordingError for anything that is none of them."""
     if isinstance(source, Evidence):
         return source
@@ -77,6 +82,7 @@ def evidence(source, label: str = "") -> Evidence:
 
 
 def of_run(run: Run, label: str) -> Evidence:
+    """A run as evidence: numbers only."""
     from sailviz.recording.contract import ensemble_path, ensemble_table, tables
 
     steps = run.first + np.arange(len(run))
@@ -115,16 +121,17 @@ def of_run(run: Run, label: str) -> Evidence:
 
 
 def of_recording(recording: Recording, label: str) -> Evidence:
+    """A recording as evidence, with its views and its picture; one by others by its float64 columns."""
     known = truth_of(recording)
     sailviz = bool(recording.contract)
     entities = known if sailviz else [name for name in recording.entities if numeric(recording, name)]
-    facts = {}
+    facts: dict[str, Any] = {}
     if "/scene" in recording:
         scene = recording["/scene"]
         facts = {name: plain(scene[name][0]) for name in FACTS if name in scene}
         facts["complete"] = recording.complete
     elif not recording.complete:
-        facts = {"complete": False} if recording._whole else {}
+        facts = {"complete": False} if recording.cut_off else {}
     return Evidence(
         label,
         tuple(entities),
@@ -144,6 +151,7 @@ def truth_of(recording: Recording) -> list[str]:
 
 
 def of_npz(path: Path, label: str) -> Evidence:
+    """An archive of arrays as evidence. RecordingError for one that `export` has not written."""
     try:
         with np.load(path, allow_pickle=False) as stored:
             values = {name: stored[name] for name in stored.files}
@@ -153,19 +161,19 @@ def of_npz(path: Path, label: str) -> Evidence:
         raise RecordingError(f"{path} is not a table of numpy arrays, or was cut off") from None
     if "state.time_s" not in values or "state.step" not in values:
         raise RecordingError(f"{path} was not written by `sailviz export --to npz`: it has no state.time_s")
-    tables: dict[str, dict] = {}
+    tables: dict[str, dict[str, np.ndarray]] = {}
     for name, column in values.items():
         entity, _, short_name = name.rpartition(".")
         tables.setdefault(f"/{entity}", {})[short_name] = column
     scene = {name: plain(value[()]) for name, value in tables.pop("/scene", {}).items()}
     rows = tables.pop("/events", None)
-    events = ()
+    events: tuple[EventRow, ...] = ()
     if rows is not None:
         columns = zip(rows["name"], rows["time_s"], rows["state"], rows["step"], strict=True)
         events = tuple(EventRow(str(name), float(time), state, int(step)) for name, time, state, step in columns)
     steps, times = values["state.step"], values["state.time_s"]
 
-    def table(entity):
+    def table(entity: str) -> Table:
         columns = dict(tables[entity])
         return Table(columns.pop("step", steps), columns.get("time_s", times), columns)
 
@@ -180,19 +188,19 @@ def of_npz(path: Path, label: str) -> Evidence:
     )
 
 
-def plain(value):
+def plain(value: Any) -> Any:
     """A numpy scalar as Python's own."""
     return value.item() if isinstance(value, np.generic) else value
 
 
 def numeric(recording: Recording, name: str) -> bool:
     """Whether an entity has a column of float64 over time."""
-    entity = Entity(name, recording._chunks(name))
-    kinds = [table.schema.field(column).type for table in entity._tables for column in table.column_names]
+    kinds = [column.type for table in recording.head(name).tables for column in table.schema]
     return any(is_component(kind) and innermost(kind) == pa.float64() for kind in kinds)
 
 
 def innermost(kind: pa.DataType) -> pa.DataType:
+    """What lists of lists hold in the end."""
     while is_component(kind) or pa.types.is_fixed_size_list(kind):
         kind = kind.value_type
     return kind
@@ -200,17 +208,17 @@ def innermost(kind: pa.DataType) -> pa.DataType:
 
 def table_of(recording: Recording, name: str) -> Table:
     """The columns of an entity over time. Columns that were logged at other times than the first are left out."""
-    entity = Entity(name, recording._chunks(name))
-    if not entity._tables:
+    entity = Entity(name, list(recording.chunks(name)))
+    if not entity.tables:
         raise RecordingError(f"{recording.path}: {name} does not change over time")
-    table = entity._tables[0]
+    table = entity.tables[0]
     columns = {short(column): to_numpy(table[column]) for column in table.column_names if ":" in column}
     lines = [column for column in table.column_names if not is_component(table[column].type)]
     steps = table["step"].to_numpy() if "step" in lines else np.arange(len(table))
     if "time_s" in columns:
         return Table(steps, columns["time_s"], columns)
     if name in TRUTH and "/state" in recording:  # the float64 times, where the rows are those of /state
-        state = Entity("/state", recording._chunks("/state"))
+        state = Entity("/state", list(recording.chunks("/state")))
         if np.array_equal(state.timeline("step"), steps):
             return Table(steps, state["time_s"], columns)
     line = next((line for line in ("sim_time", *lines) if line in lines), None)
@@ -229,16 +237,16 @@ def epoch_of(recording: Recording) -> np.datetime64 | None:
         utc, elapsed = state.timeline("utc"), state.timeline("sim_time")
     except KeyError:
         return None
-    return utc[0] - elapsed[0] if len(utc) else None
+    return np.datetime64(utc[0] - elapsed[0], "ns") if len(utc) else None
 
 
-def views_of(recording: Recording) -> Counter | None:
+def views_of(recording: Recording) -> Counter[tuple[str, str, str]] | None:
     """(kind, name, origin) of every view of the layout that travels with a recording; None without a layout."""
-    found: dict[str, tuple[int, dict]] = {}
-    layouts = recording._reader.blueprints()
+    found: dict[str, tuple[int, dict[str, Any]]] = {}
+    layouts = recording.blueprints()
     for number, layout in enumerate(layouts):
-        for chunk in recording._reader.stream(store=layout).filter(content="/view/**"):
-            if chunk.entity_path.count("/") != 2:  # the properties of a view lie below it
+        for chunk in layout:
+            if not re.fullmatch("/view/[^/]+", chunk.entity_path):  # the properties of a view lie below it
                 continue
             batch = chunk.to_record_batch()
             for row in range(len(batch)):
@@ -256,7 +264,7 @@ def views_of(recording: Recording) -> Counter | None:
     )
 
 
-def picture_of(recording: Recording) -> Iterator[tuple[str, dict[str, tuple[np.ndarray, pa.Array]]]]:
+def picture_of(recording: Recording) -> Iterator[Drawn]:
     """(entity, name -> (steps, Arrow column)) of everything that is there to be looked at. Static columns have the
     step -1; those of several rows stand in order of step.
     """
@@ -264,7 +272,7 @@ def picture_of(recording: Recording) -> Iterator[tuple[str, dict[str, tuple[np.n
     for name in recording.entities:
         if name in apart:
             continue
-        batches = [chunk.to_record_batch() for chunk in recording._chunks(name)]
+        batches = [chunk.to_record_batch() for chunk in recording.chunks(name)]
         temporal = [batch for batch in batches if any(line in batch.schema.names for line in TIMELINES)]
         static = [batch for batch in batches if not any(line in batch.schema.names for line in TIMELINES)]
         columns = {short(key): (np.array([-1]), value) for key, value in latest_static(static).items()}

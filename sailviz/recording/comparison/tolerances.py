@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from sailviz.errors import RecordingError
+
+Given = float | Mapping[str, float] | None  # one for all, or by the name of a quantity, a column or an entity
 
 
 class Tolerances:
     """Tolerances by quantity."""
 
-    def __init__(self, atol, rtol):
+    def __init__(self, atol: Given, rtol: Given):
         self._atol = self._by_name(atol, "atol")
         self._rtol = self._by_name(rtol, "rtol")
         self._used: set[str] = {""}
 
     @staticmethod
-    def _by_name(given, word) -> dict[str, float]:
+    def _by_name(given: Given, word: str) -> dict[str, float]:
         if given is None:
             return {}
         named = dict(given) if isinstance(given, Mapping) else {"": given}
@@ -30,14 +32,14 @@ class Tolerances:
         """(atol, or None for the default; rtol) of a quantity."""
         return self._find(self._atol, entity, column), self._find(self._rtol, entity, column) or 0.0
 
-    def _find(self, named, entity, column):
+    def _find(self, named: dict[str, float], entity: str, column: str) -> float | None:
         for name in (f"{entity}:{column}", column, entity):
             if name in named:
                 self._used.add(name)
                 return named[name]
         return named.get("")
 
-    def check_used(self, known) -> None:
+    def check_used(self, known: Sequence[str]) -> None:
         """Raise RecordingError for a name that no quantity has."""
         for name in [*self._atol, *self._rtol]:
             if name not in self._used:

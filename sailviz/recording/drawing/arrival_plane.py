@@ -5,6 +5,7 @@ a scale of its own.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import rerun as rr
@@ -48,7 +49,8 @@ def log_arrival_axes(picture: Picture, arrival: Arrival) -> None:
     path, reference = f"{arrival.path}/axes", [style.REFERENCE]
     origin = arrival.place(0.0, 0.0)
     lines = [arrival.place(np.array(arrival.ahead), 0.0), arrival.place(0.0, np.array(arrival.out))]
-    places, names = [], []
+    places: list[Any] = []
+    names: list[str] = []
     spread_out = arrival.ahead[1] - arrival.ahead[0] > 2 * NARROW  # flights that stand still have one azimuth
     for number in ticks(np.degrees(arrival.ahead)) if spread_out else ():
         at = arrival.place(np.radians(number), 0.0)
@@ -62,9 +64,10 @@ def log_arrival_axes(picture: Picture, arrival: Arrival) -> None:
         names.append(f"{number:+.4g}")
     picture.log_static(path, rr.LineStrips2D([f4(line) for line in lines], colors=[style.AXES], radii=points(0.7)))
     top = arrival.place(0.0, arrival.out[1])
-    words = [[max(top[0], 0.3 - BOX[0]), top[1] - 0.09], [BOX[0] - 0.22, origin[1] - 0.10]]
-    for name, at, texts in (("numbers", places, names), ("names", words, ["farther out [10⁻³ au]", "ahead"])):
-        labels = rr.Points2D(f4(at), radii=points(style.ANCHOR), colors=reference, labels=texts, show_labels=True)
+    words: list[Any] = [[max(top[0], 0.3 - BOX[0]), top[1] - 0.09], [BOX[0] - 0.22, origin[1] - 0.10]]
+    written = (("numbers", places, names), ("names", words, ["farther out [10⁻³ au]", "ahead"]))
+    for name, spots, texts in written:
+        labels = rr.Points2D(f4(spots), radii=points(style.ANCHOR), colors=reference, labels=texts, show_labels=True)
         picture.log_static(f"{path}/{name}", labels)
     picture.log_static(f"{path}/nominal", rr.Points2D([f4(origin)], radii=points(3.0), colors=[style.NOMINAL]))
 

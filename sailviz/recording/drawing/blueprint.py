@@ -13,6 +13,8 @@ from sailviz.recording.drawing.layout import DESCENT, TUBE, Layout
 from sailviz.recording.drawing.plot_column import PlotView
 from sailviz.recording.drawing.style import BACKGROUND
 
+View = rrb.View | rrb.Container
+Overrides = dict[rr.encodings.EntityPath | str, rrb.VisibleTimeRanges | rrb.EntityBehavior]
 ENDLESS = rrb.TimeRangeBoundary.infinite()
 NOW = rrb.TimeRangeBoundary.cursor_relative()
 WHOLE_TIME = rrb.TimeAxis(view_range=rr.TimeRange(start=ENDLESS, end=ENDLESS))
@@ -43,7 +45,7 @@ def arrange(layout: Layout) -> rrb.Container:
         rrb.TextLogView(origin="/log", name="Events", columns=event_columns(layout)),
         active_tab=0,
     )
-    below = close_view(layout.close_up)
+    below: View = close_view(layout.close_up)
     if layout.arrivals:
         below = rrb.Tabs(*(arrival_view(arrival) for arrival in layout.arrivals), below, active_tab=0)
     left = rrb.Vertical(
@@ -51,7 +53,8 @@ def arrange(layout: Layout) -> rrb.Container:
         rrb.Horizontal(below, words, column_shares=[1, 1] if layout.arrivals else [3, 2]),
         row_shares=[4, 3],
     )
-    right, shares = [], []
+    right: list[View] = []
+    shares: list[float] = []
     for slot in layout.slots:
         plots = [plot_view(plot) for plot in slot.plots]
         right.append(plots[0] if len(plots) == 1 else rrb.Tabs(*plots, active_tab=0))
@@ -75,6 +78,7 @@ def event_columns(layout: Layout) -> TextLogColumns:
 
 
 def space_view(layout: Layout, camera: Camera) -> rrb.Spatial3DView:
+    """The system, from one of its cameras."""
     contents = ["+ /world/**", "- /world/plane/**", "+ /world/plane/shells/**"]
     contents += [f"- {path}/**" for path in layout.hidden]
     if layout.arrivals:
@@ -99,6 +103,7 @@ def space_view(layout: Layout, camera: Camera) -> rrb.Spatial3DView:
 
 
 def arrival_view(arrival: Arrival) -> rrb.Spatial2DView:
+    """A plane of arrival."""
     (x, y), margin = BOX, 1.12
     return rrb.Spatial2DView(
         name=arrival.name,
@@ -110,6 +115,7 @@ def arrival_view(arrival: Arrival) -> rrb.Spatial2DView:
 
 
 def close_view(camera: Camera) -> rrb.Spatial3DView:
+    """The craft from close by."""
     return rrb.Spatial3DView(
         name=camera.name,
         origin=camera.origin,
@@ -121,14 +127,15 @@ def close_view(camera: Camera) -> rrb.Spatial3DView:
 
 
 def eye(camera: Camera) -> rrb.EyeControls3D:
+    """Where a view looks from."""
     return rrb.EyeControls3D(
         kind=rrb.Eye3DKind.Orbital, position=camera.position, look_target=camera.target, eye_up=camera.up
     )
 
 
-def trail_ranges(layout: Layout) -> dict:
+def trail_ranges(layout: Layout) -> Overrides:
     """Which part of the run each part of the trail shows. The parts do not overlap: lines on one another tear."""
-    ranges = {
+    ranges: Overrides = {
         "/world/trail/past": time_range(layout, -layout.past if layout.past else None, -layout.tail),
         "/world/trail/recent": time_range(layout, -layout.tail, 0.0),
         "/world/ladder": time_range(layout, None, None),
@@ -147,7 +154,7 @@ def trail_ranges(layout: Layout) -> dict:
 def time_range(layout: Layout, start: float | None, end: float | None) -> rrb.VisibleTimeRanges:
     """From `start` to `end`, s after the cursor; None is without limit."""
 
-    def boundary(seconds, timeline):
+    def boundary(seconds: float | None, timeline: str) -> rrb.TimeRangeBoundary:
         if seconds is None:
             return ENDLESS
         if timeline == "step":
@@ -160,6 +167,7 @@ def time_range(layout: Layout, start: float | None, end: float | None) -> rrb.Vi
 
 
 def plot_view(plot: PlotView) -> rrb.TimeSeriesView:
+    """Curves."""
     legend = (
         rrb.PlotLegend(getattr(rrb.Corner2D, plot.legend), visible=True)
         if plot.legend

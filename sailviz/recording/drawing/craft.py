@@ -79,7 +79,7 @@ class Glow:
 
 def log_tether(picture: Picture, path: str, start: float, width: float, thickness: float, near: bool) -> None:
     """A tether of length 1 hanging from z = -start to -1 with tip and sheath; thickness of the sheath in lengths."""
-    picture.log_lines(f"{path}/line", [[[0, 0, -start], [0, 0, -1]]], style.TETHER_BRAKE, width)
+    picture.log_lines(f"{path}/line", [[[0.0, 0.0, -start], [0.0, 0.0, -1.0]]], style.TETHER_BRAKE, width)
     picture.log_static(f"{path}/tip", rr.Points3D([[0, 0, -1]], radii=points(6.0 if near else 3.0), colors=[style.BUS]))
     picture.log_static(
         f"{path}/sheath",

@@ -30,11 +30,7 @@ class Curves:
         self._picker = timelines.Picker(first.setting.rows, most, first.setting.duration)
         self.plots = plots_of(first, frame, craft)
         self.ranges: dict[str, tuple[float, float]] = {}
-        self._lanes = {"thrust": lambda run: run.thrust.on} | {
-            name: (lambda run, name=name: run.environment[name])
-            for name, v in first.environment.items()
-            if v.dtype == bool
-        }
+        self._lanes = ["thrust", *(name for name, values in first.environment.items() if values.dtype == bool)]
         self._state: dict[str, str] = {}
         self._time = frame.start  # s, of the last row so far
         self._far = np.inf if frame.sun else UNKNOWN * frame.period
@@ -75,19 +71,20 @@ class Curves:
                     plot.path, index, rr.Scalars.columns(scalars=np.where(np.isfinite(values), values, np.nan))
                 )
         far = np.diff(run.time, prepend=self._time) > self._far
-        for lane, values in self._lanes.items():
-            states = np.where(np.asarray(values(run), bool), "on", "off")
+        for lane in self._lanes:
+            on = run.thrust.on if lane == "thrust" else run.environment[lane]
+            states = np.where(np.asarray(on, bool), "on", "off")
             self._add_lane(lane, run, np.where(far, "unknown", states) if lane == "sunlit" else states)
         self._time = float(run.time[-1])
 
-    def _stretch(self, path: str, values) -> None:
+    def _stretch(self, path: str, values: np.ndarray) -> None:
         for k in range(values.shape[1]):
             finite = values[np.isfinite(values[:, k]), k]
             if len(finite):
                 low, high = self.ranges.get(f"{path}:{k}", (np.inf, -np.inf))
                 self.ranges[f"{path}:{k}"] = (min(low, float(finite.min())), max(high, float(finite.max())))
 
-    def _add_lane(self, lane: str, run: Run, states) -> None:
+    def _add_lane(self, lane: str, run: Run, states: np.ndarray) -> None:
         """Only the changes are written."""
         before = self._state.get(lane)
         changed = np.flatnonzero(np.concatenate([[before or ""], states[:-1]]) != states)

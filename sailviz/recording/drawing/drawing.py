@@ -34,7 +34,7 @@ class Drawing:
         self._before = np.full(2, -np.inf)  # s, times of the last two rows drawn
         self._rung = 0  # number of the next orbit of the ladder
         self._layout: Layout | None = None
-        self._extents = Extents()
+        self._extents = Extents(first)
         self._frame = Frame.of(first)
         self._picker = timelines.Picker(self._frame.rows, self._frame.most, self._frame.duration)
         self._craft = CRAFT[setting.craft.kind]

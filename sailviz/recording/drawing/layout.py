@@ -57,27 +57,25 @@ class Layout:
 class Extents:
     """How far a run reaches, gathered block by block over all rows."""
 
-    def __init__(self):
-        self.farthest = self.nearest = None  # m
+    def __init__(self, first: Run):
+        self.farthest, self.nearest = 0.0, np.inf  # m
         self.lowest = self.highest = 0.0  # m from the plane x, y
         self.thrust = 0.0  # m/s2
         self.reached = 0.0  # s from the first row to the last so far
         self.finished = False  # whether there will be no more
-        self.middle: Run | None = None  # the last row before the middle of the duration
-        self._start = 0.0  # s, time of the first row
+        self.middle = replace(timelines.take(first, slice(0, 1)), first=first.first)  # the last row before half time
+        self._start = float(first.time[0])  # s
         self._pushes: list[np.ndarray] = []  # position m and thrust m/s2 of some rows, (k, 6)
         self.bodies: dict[str, float] = {}  # farthest distance of each, m
 
     def add(self, run: Run) -> None:
-        if self.farthest is None:
-            self._start = float(run.time[0])
+        """The next rows."""
         self.reached = float(run.time[-1]) - self._start
         some = timelines.on_stride(run, timelines.stride(run.setting.rows, PUSHES))
         self._pushes.append(np.hstack([run.position[some], run.thrust.acceleration[some]]))
         distance = np.linalg.norm(run.position, axis=1)
         low, high = float(distance.min()), float(distance.max())
-        self.farthest = high if self.farthest is None else max(self.farthest, high)
-        self.nearest = low if self.nearest is None else min(self.nearest, low)
+        self.farthest, self.nearest = max(self.farthest, high), min(self.nearest, low)
         self.lowest = min(self.lowest, float(run.position[:, 2].min()))
         self.highest = max(self.highest, float(run.position[:, 2].max()))
         self.thrust = max(self.thrust, float(run.thrust.magnitude.max()))
@@ -85,9 +83,17 @@ class Extents:
             self.bodies[name] = max(self.bodies.get(name, 0.0), float(np.linalg.norm(position, axis=1).max()))
         halfway = self._start + 0.5 * run.setting.duration
         wanted = int(np.searchsorted(run.time, halfway, side="right")) - 1
-        if self.middle is None or wanted >= 0:
-            wanted = max(wanted, 0)
+        if wanted >= 0:
             self.middle = replace(timelines.take(run, slice(wanted, wanted + 1)), first=run.first + wanted)
+
+    @property
+    def still(self) -> bool:
+        """Whether the distance hardly changes."""
+        return self.farthest - self.nearest < DEPARTING * self.farthest
+
+    def span(self, duration: float) -> float:
+        """s that the run lasts: as asked for, until it is known how far it reached."""
+        return self.reached if self.finished and self.reached > 0 else duration
 
     def tips(self, scale: float) -> np.ndarray:
         """Where arrows of thrust end, m, `scale` m long per m/s2. (k, 3)"""
@@ -99,23 +105,18 @@ def lay_out(
     setting: Setting, frame: Frame, extents: Extents, curves: Curves, craft: CraftDrawing, close_up: CloseUp
 ) -> Layout:
     """The layout of a run that reaches as far as `extents` says."""
-    references = [float(np.linalg.norm(r.points, axis=1).max()) for r in setting.references if r.role != "planet"]
-    spread = [float(e.percentiles.get("radius_m", e.nominal[:, :1].T).max()) for e in setting.ensembles]
-    radius = max([extents.farthest, *references, *spread]) / frame.unit
+    radius = reach_of(setting, extents) / frame.unit
+    over_planet = not frame.sun and setting.body.radius > 0
+    among = style.AMONG_MANY if setting.ensembles else 1.0
     middle = Samples.of(extents.middle, np.array([extents.middle.first]), frame)
-    sail = craft.size * radius
-    sail *= style.AMONG_MANY if setting.ensembles else 1.0
-    tether = 0.0
-    if not frame.sun and setting.body.radius > 0:
+    sail, tether = craft.size * radius * among, 0.0
+    if over_planet:
         sail = sail if craft.size_over_planet is None else craft.size_over_planet * radius
         tether = min(0.13 * radius, max(0.9 * (extents.nearest / frame.unit - 1), 0.01))
     revolution = revolution_time(extents.middle)
-    turns = setting.duration / revolution
-    still = extents.farthest - extents.nearest < DEPARTING * extents.farthest
-    closed = bool(still and turns > 1.2 and not frame.sparse)
-    thrust_scale = style.THRUST_LENGTH * radius / extents.thrust if extents.thrust > 0 else 1.0
-    thrust_scale *= style.AMONG_MANY if setting.ensembles else 1.0
-    if frame.sun or setting.body.radius == 0:
+    closed = extents.still and setting.duration / revolution > 1.2 and not frame.sparse
+    thrust_scale = (style.THRUST_LENGTH * radius / extents.thrust if extents.thrust > 0 else 1.0) * among
+    if not over_planet:
         tips = extents.tips(thrust_scale * frame.unit) / frame.unit
         views = about_sun(
             radius, extents.lowest / frame.unit, extents.highest / frame.unit, tips, middle, setting, craft
@@ -125,7 +126,7 @@ def lay_out(
         views = about_planet(radius, middle, frame, setting)
         tail = min(2.6 * revolution, 0.3 * setting.duration)
     names = name_views(views, setting, frame, craft, tether if craft.tether else sail)
-    timelines = ("sim_time", "step") if setting.epoch is None else ("utc", "sim_time", "step")
+    shown_on = ("sim_time", "step") if setting.epoch is None else ("utc", "sim_time", "step")
     shown, environment = plot_views(curves, frame, craft.steers)
     lanes = tuple(lane for lane, changes in curves.changes.items() if changes)
     slots, lane_share = column(shown, environment, lanes)
@@ -149,14 +150,20 @@ def lay_out(
         past=0.86 * revolution if closed else 0.0,
         future=not closed,
         sparse=frame.sparse,
-        timeline=timelines[0],
-        timelines=timelines,
-        speed=(extents.reached if extents.finished and extents.reached > 0 else setting.duration)
-        / setting.play_duration,
+        timeline=shown_on[0],
+        timelines=shown_on,
+        speed=extents.span(setting.duration) / setting.play_duration,
         rows_per_second=setting.rows / setting.duration,
         arrivals=arrivals_of(setting) if setting.ensembles else (),
         ensembles=tuple(word(ensemble.name) for ensemble in setting.ensembles),
     )
+
+
+def reach_of(setting: Setting, extents: Extents) -> float:
+    """The largest distance from the centre, m, that must be in sight."""
+    references = [float(np.linalg.norm(r.points, axis=1).max()) for r in setting.references if r.role != "planet"]
+    spread = [float(e.percentiles.get("radius_m", e.nominal[:, :1].T).max()) for e in setting.ensembles]
+    return max([extents.farthest, *references, *spread])
 
 
 def planets(setting: Setting, extents: Extents) -> dict[str, float]:
@@ -235,7 +242,8 @@ def follow_eye(middle: Samples, craft: CraftDrawing) -> np.ndarray:
         return np.array([0.30, -0.62, 0.26])
     eyes = np.array([[-0.42, side * 0.50, height] for side in (1, -1) for height in (0.26, 0.44)])
     facing = -unit(eyes) @ middle.normal_rtn[0]
-    return eyes[np.argmax(facing > 0.3)] if np.any(facing > 0.3) else eyes[np.argmax(facing)]
+    best: np.ndarray = eyes[np.argmax(facing > 0.3)] if np.any(facing > 0.3) else eyes[np.argmax(facing)]
+    return best
 
 
 def about_planet(radius: float, middle: Samples, frame: Frame, setting: Setting) -> list[Camera]:
@@ -254,7 +262,7 @@ def about_planet(radius: float, middle: Samples, frame: Frame, setting: Setting)
         eye, above = (np.array([c * v[0] + s * v[1], c * v[1] - s * v[0], v[2]]) for v in (eye, above))
     return [
         Camera(setting.body.name, home, tuple(eye.tolist())),
-        Camera("Follow", "/world/rtn", *(tuple(point) for point in follow.tolist()), (1.0, 0.0, 0.0)),
+        Camera("Follow", "/world/rtn", tuple(follow[0].tolist()), tuple(follow[1].tolist()), (1.0, 0.0, 0.0)),
         Camera("Orbit pole", home, tuple(above.tolist())),
         *(descent_camera(radius) if frame.turns > PLANE_TURNS else ()),
     ]

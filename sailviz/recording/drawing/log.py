@@ -102,7 +102,7 @@ class Picture:
     ) -> None:
         """translation (n, 3), quaternion (n, 4) xyzw."""
         given = {"translation": translation, "quaternion": quaternion}
-        values = {name: f4(value) for name, value in given.items() if value is not None}
+        values: dict[str, Any] = {name: f4(value) for name, value in given.items() if value is not None}
         self.log_columns(path, index, rr.Transform3D.columns(**values))
 
     def log_arrow_style(self, path: str, color: Color, width: float) -> None:
@@ -121,12 +121,12 @@ class Picture:
 
     def log_strip_style(self, path: str, color: Color | None, width: float) -> None:
         """Colour, unless it has rows, and width, in ui points, of the lines of an entity."""
-        more = {} if color is None else {"colors": [list(color)]}
+        more: dict[str, Any] = {} if color is None else {"colors": [list(color)]}
         self.log_static(path, rr.LineStrips3D.from_fields(radii=points(width), **more))
 
     def log_strips(self, path: str, index: Index, strips: ArrayLike, colors: ArrayLike | None = None) -> None:
         """strips (n, k, 3): one line of k points a row; colors (n,) 0xRRGGBBAA."""
-        more = {} if colors is None else {"colors": np.asarray(colors, np.uint32)}
+        more: dict[str, Any] = {} if colors is None else {"colors": np.asarray(colors, np.uint32)}
         self.log_columns(path, index, rr.LineStrips3D.columns(strips=f4(strips), **more))
 
     def log_broken_strips(
@@ -150,7 +150,7 @@ class Picture:
 
     def log_label_style(self, path: str, color: Color, text: str | None = None) -> None:
         """Colour of the labels of an entity, and their text where it is always the same."""
-        more = {} if text is None else {"labels": [text]}
+        more: dict[str, Any] = {} if text is None else {"labels": [text]}
         self.log_static(
             path, rr.Points3D.from_fields(radii=points(ANCHOR), colors=[list(color)], show_labels=True, **more)
         )

@@ -6,6 +6,8 @@ of years can be compared, although the orbits themselves lie across each other. 
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import rerun as rr
 
@@ -50,7 +52,7 @@ class OrbitPlane:
         identity = np.broadcast_to(np.eye(3), axes.shape)
         for path in self._orbits:
             turned = axes if path == "/world/plane/orbit" else identity
-            values = {name: f4(value) for name, value in rings(run, turned, self._frame).items()}
+            values: dict[str, Any] = {name: f4(value) for name, value in rings(run, turned, self._frame).items()}
             ramp = rr.LineStrips3D.columns(colors=np.asarray(colors, np.uint32))
             picture.log_columns(path, index, [*rr.Transform3D.columns(**values), *ramp])
         radius = run.elements.semi_major_axis / self._frame.unit
@@ -94,7 +96,7 @@ def turned_by(quaternions: np.ndarray, vectors: np.ndarray) -> np.ndarray:
     """Vectors (n, k, 3) turned by quaternions (n, 4) xyzw."""
     axis, scalar = quaternions[:, None, :3], quaternions[:, None, 3:]
     twice = 2 * np.cross(axis, vectors)
-    return vectors + scalar * twice + np.cross(axis, twice)
+    return np.asarray(vectors + scalar * twice + np.cross(axis, twice))
 
 
 def log_shell(picture: Picture, path: str, shell: Shell, axes: np.ndarray, length: float) -> None:
@@ -129,8 +131,8 @@ def shares(value: np.ndarray) -> np.ndarray:
     low = np.nanmin(value)
     if low >= 0 and high > 10 * low:
         decades = min(3.0, np.log10(high / low)) if low > 0 else 3.0
-        return np.clip(np.log10(np.clip(np.nan_to_num(value) / high, 1e-30, None)) / decades + 1, 0, 1)
-    return np.nan_to_num((value - low) / (high - low)) if high > low else np.ones_like(value)
+        return np.asarray(np.clip(np.log10(np.clip(np.nan_to_num(value) / high, 1e-30, None)) / decades + 1, 0, 1))
+    return np.asarray(np.nan_to_num((value - low) / (high - low)) if high > low else np.ones_like(value))
 
 
 def notes(run: Run, frame: Frame, ladder: int) -> list[str]:

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import rerun as rr
 
-import sailviz
 from sailviz.frames import body_axes, quaternion, unit
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.log import Picture
@@ -17,7 +15,8 @@ from sailviz.recording.drawing.samples import Samples
 from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Run
 from sailviz.shapes.planets import globe
-from sailviz.shapes.primitives import Trimesh, ball, cap, tube
+from sailviz.shapes.primitives import Trimesh, ball, cap, scaled, tube
+from sailviz.shipped import shipped_folder
 
 NIGHT_EDGES = np.radians(np.linspace(100, 78, 16))  # half-angles of what darkens: together a soft terminator
 NIGHT_RADIUS = 1.0035  # so that it lies on the ground and not in it
@@ -56,8 +55,8 @@ def about_axis(angle: np.ndarray) -> np.ndarray:
 
 def log_planet(picture: Picture, path: str, name: str) -> None:
     """A planet of radius 1: the Earth with its map, longitude 0 at x, others plain."""
-    world_map = asset("earth_2048.jpg") if name == "Earth" else None
-    if world_map is None:
+    world_map = shipped_folder("assets") / "earth_2048.jpg"
+    if name != "Earth" or not world_map.is_file():
         color = style.OCEAN if name == "Earth" else style.dim(style.PLANETS.get(name, style.ROCK), 0.8)
         picture.log_mesh(f"{path}/ball", ball(48, 96), color, shaded=False)
         return
@@ -69,9 +68,7 @@ def log_planet(picture: Picture, path: str, name: str) -> None:
 def log_air(picture: Picture, path: str, sphere: Trimesh, halo: Iterable[tuple[float, int]] = HALO) -> None:
     """A halo: the far sides of nested shells. halo : pairs of radius and alpha."""
     for k, (radius, alpha) in enumerate(halo):
-        shell = sphere.copy()
-        shell.apply_scale(radius)
-        picture.log_mesh(f"{path}/shell{k}", shell, [*style.AIR, alpha], shaded=False, side="back")
+        picture.log_mesh(f"{path}/shell{k}", scaled(sphere, radius), [*style.AIR, alpha], shaded=False, side="back")
 
 
 def log_night(picture: Picture) -> None:
@@ -87,10 +84,3 @@ def log_night(picture: Picture) -> None:
         rr.Arrows3D(origins=[[0, 0, -1.32]], vectors=[[0, 0, 0.20]], colors=[style.SUN], radii=points(2.0)),
     )
     picture.log_label("/world/night/sunlight/name", "sunlight", style.SUN, (0, 0, -1.36))
-
-
-def asset(name: str) -> Path | None:
-    """A file that travels with sailviz, None where it is missing: inside the package, or beside it in a checkout."""
-    package = Path(sailviz.__file__).parent
-    homes = (package / "assets", package.parent / "assets")
-    return next((home / name for home in homes if (home / name).is_file()), None)

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from sailviz.recording.drawing.curves import Curves
-from sailviz.recording.drawing.plots import nice_range
+from sailviz.recording.drawing.plots import Plot, nice_range
 from sailviz.recording.drawing.samples import Frame
 
-ALWAYS = ("distance", "altitude", "inclination", "eccentricity", "angles", "clock", "thrust")
-ALWAYS = tuple(f"/plots/{name}" for name in ALWAYS)
+EVERY_RUN = ("distance", "altitude", "inclination", "eccentricity", "angles", "clock", "thrust")
+ALWAYS = tuple(f"/plots/{name}" for name in EVERY_RUN)
 BRAKE = (  # what a tether's run shows below its altitude; what is in one place shares it as tabs
     ("plasma_density", "mean_ion_mass", "air_density", "solar_flux", "altitude_over"),
     ("plasma_force", "thrust", "air_drag"),
@@ -20,6 +22,8 @@ COLUMN, FURNITURE, NUMBER = 640.0, 48.0, 19.0  # pixels: the plots on a laptop, 
 
 @dataclass(frozen=True)
 class PlotView:
+    """A view of curves, with the range of its axis."""
+
     title: str
     paths: tuple[str, ...]
     low: float
@@ -36,14 +40,16 @@ class Slot:
     share: float
 
 
-def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple, tuple]:
+def plot_views(
+    curves: Curves, frame: Frame, steers: bool
+) -> tuple[tuple[PlotView, ...], tuple[tuple[PlotView, ...], ...]]:
     """Which curves are shown: first those that every run has, then in groups what the environment did.
 
     steers : whether the craft has angles that mean something
     """
     known = {plot.path: plot for plot in curves.plots}
 
-    def view(path: str, **more) -> PlotView:
+    def view(path: str, **more: Any) -> PlotView:
         plot = known[path]
         low, high = curves.reach(path)
         if high - low < plot.noise:
@@ -51,37 +57,46 @@ def plot_views(curves: Curves, frame: Frame, steers: bool) -> tuple[tuple, tuple
         legend = "RightTop" if len(plot.names) > 1 else ""
         if plot.from_zero:
             low = min(low, 0.0)
-        return PlotView(**{"title": plot.title, "paths": (path,), "low": low, "high": high, "legend": legend} | more)
+        values: dict[str, Any] = {"title": plot.title, "paths": (path,), "low": low, "high": high, "legend": legend}
+        return PlotView(**values | more)
 
-    shown = []
-    if "/plots/distance" in known:
-        r_low, r_high = curves.ranges["/plots/distance:0"]
-        a_low, a_high = curves.ranges.get("/plots/distance:1", (r_low, r_high))
-        # the semi-major axis of an orbit close to escape is beyond all measure: it may leave the range
-        low, high = max(min(r_low, a_low), 0.5 * r_low), min(max(r_high, a_high), 1.5 * r_high)
-        shown.append(view("/plots/distance", low=low, high=high, share=3.0))
-    else:
-        descent = len(known["/plots/altitude"].names) > 2
-        shown.append(
-            view("/plots/altitude", share=4.2 if descent else 3.0, legend="LeftBottom" if descent else "RightTop")
-        )
+    shown = [distance_view(curves, view) if "/plots/distance" in known else altitude_view(known, view)]
     tilt = curves.reach("/plots/inclination")
     tilted = tilt[1] > 0.05 and (frame.sun or tilt[1] - tilt[0] > 0.05)
     shown.append(view("/plots/inclination" if tilted else "/plots/eccentricity"))
     shown += angle_views(curves, view) if steers else []
     tether = "/plots/plasma_force_N_m" in known
     shown += [] if tether else [view("/plots/thrust")]
+    return tuple(shown), tuple(tuple(view(path) for path in group) for group in environment_groups(known, tether))
+
+
+def environment_groups(known: Iterable[str], tether: bool) -> list[list[str]]:
+    """The curves that not every run has, those that share a place together."""
     others = [path for path in known if path not in ALWAYS or (tether and path == "/plots/thrust")]
     groups = []
     for stems in BRAKE if tether else ():
         group = [path for stem in stems for path in others if path.startswith(f"/plots/{stem}")]
         others = [path for path in others if path not in group]
-        groups.append(tuple(view(path) for path in group))
-    groups.append(tuple(view(path) for path in others))
-    return tuple(shown), tuple(group for group in groups if group)
+        groups.append(group)
+    return [group for group in (*groups, others) if group]
 
 
-def angle_views(curves: Curves, view) -> list[PlotView]:
+def distance_view(curves: Curves, view: Callable[..., PlotView]) -> PlotView:
+    """Distance and semi-major axis. That of an orbit close to escape is beyond all measure: it may leave the range."""
+    r_low, r_high = curves.ranges["/plots/distance:0"]
+    a_low, a_high = curves.ranges.get("/plots/distance:1", (r_low, r_high))
+    low, high = max(min(r_low, a_low), 0.5 * r_low), min(max(r_high, a_high), 1.5 * r_high)
+    return view("/plots/distance", low=low, high=high, share=3.0)
+
+
+def altitude_view(known: Mapping[str, Plot], view: Callable[..., PlotView]) -> PlotView:
+    """Altitudes; those of a descent have more room, and their legend where no curve comes."""
+    if len(known["/plots/altitude"].names) > 2:
+        return view("/plots/altitude", share=4.2, legend="LeftBottom")
+    return view("/plots/altitude", share=3.0, legend="RightTop")
+
+
+def angle_views(curves: Curves, view: Callable[..., PlotView]) -> list[PlotView]:
     """Pitch, cone and clock in one plot where their sizes allow it; a constant clock angle goes into the title."""
     pitch, clock = curves.reach("/plots/angles"), curves.reach("/plots/clock")
     if clock[1] - clock[0] < 0.5:
@@ -95,7 +110,9 @@ def angle_views(curves: Curves, view) -> list[PlotView]:
     return [view("/plots/angles"), view("/plots/clock", share=2.0)]
 
 
-def column(shown, environment, lanes) -> tuple[tuple[Slot, ...], float]:
+def column(
+    shown: Sequence[PlotView], environment: Sequence[tuple[PlotView, ...]], lanes: Sequence[str]
+) -> tuple[tuple[Slot, ...], float]:
     """The right column: which plots stand alone and which share a place as tabs, and the share of the lanes.
 
     More than five rows are not readable on a laptop: then the plot of the orbit's shape goes behind the first.

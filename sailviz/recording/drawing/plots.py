@@ -20,7 +20,7 @@ class Plot:
     path: str
     title: str
     names: tuple[str, ...]
-    colors: tuple
+    colors: tuple[list[int], ...]
     values: Callable[[Run], np.ndarray]
     from_zero: bool = False
     noise: float = 0.0  # a change below it is rounding, and is not shown as a change
@@ -54,11 +54,12 @@ DRAWN_OTHERWISE = ("earth_rotation_rad", "mean_altitude_m", "quasi_circular_alti
 COLORS = {"plasma_density_per_m3": style.SERIES[4], "plasma_force_N_m": style.THRUST, "air_drag_N": style.SERIES[1]}
 
 
-def degrees(*columns) -> np.ndarray:
-    return np.degrees(np.stack(columns, 1))
+def degrees(*columns: np.ndarray) -> np.ndarray:
+    """Angles (n,) in rad side by side in degrees."""
+    return np.asarray(np.degrees(np.stack(columns, 1)))
 
 
-def bound(semi_major_axis) -> np.ndarray:
+def bound(semi_major_axis: np.ndarray) -> np.ndarray:
     """Semi-major axes of closed orbits; NaN, which is not drawn, for open ones, whose axes are negative."""
     return np.where(semi_major_axis > 0, semi_major_axis, np.nan)
 
@@ -68,7 +69,7 @@ def pitch_and_cone(run: Run) -> np.ndarray:
     return degrees(run.attitude.pitch, np.where(run.thrust.magnitude > 0, run.attitude.cone, np.nan))
 
 
-def clock_about(start: float):
+def clock_about(start: float) -> Callable[[Run], np.ndarray]:
     """The clock angle in the turn about 0 or in that about 180 deg, whichever its first value is nearer to: an angle
     that sways about 0 must not jump by 360."""
     low = 0.0 if np.cos(start) < 0 else -np.pi
@@ -169,7 +170,8 @@ def descent_plot(first: Run) -> Plot:
             columns.append(run.environment["quasi_circular_altitude_m"])
         return np.stack(columns, 1) / 1e3
 
-    names, colors = ("perigee", "apogee", "mean"), (style.SERIES[2], style.SERIES[3], style.SERIES[0])
+    names: tuple[str, ...] = ("perigee", "apogee", "mean")
+    colors: tuple[list[int], ...] = (style.SERIES[2], style.SERIES[3], style.SERIES[0])
     if analytic:
         names, colors = (*names, "analytic decay"), (*colors, style.SERIES[1])
     return Plot("/plots/altitude", "Altitude [km]", names, colors, values)
@@ -189,22 +191,22 @@ def approximation_plot(first: Run) -> Plot:
 
     def values(run: Run) -> np.ndarray:
         off = [np.linalg.norm(run.approximations[name] - run.position, axis=1) for name in names]
-        return 100 * np.stack(off, 1) / np.linalg.norm(run.position, axis=1)[:, None]
+        return np.asarray(100 * np.stack(off, 1) / np.linalg.norm(run.position, axis=1)[:, None])
 
     colors = tuple(style.SERIES[(1 + k) % 5] for k in range(len(names)))
     return Plot("/plots/approximation", "Approximation off by [% of r]", names, colors, values, from_zero=True)
 
 
-def environment_plot(name: str, color) -> Plot:
+def environment_plot(name: str, color: list[int]) -> Plot:
     """A column of the environment: title from its name, unit from the name's ending, densities as logarithms."""
     ending = max((u for u in (*UNITS, *LOGARITHMIC) if name.endswith(u)), key=len, default="")
     words = name.removesuffix(ending).replace("_", " ")
     words = words[:1].upper() + words[1:]
     if ending in LOGARITHMIC or name in LOGARITHMIC_COLUMNS:
 
-        def values(run):
+        def values(run: Run) -> np.ndarray:
             with np.errstate(divide="ignore", invalid="ignore"):
-                return np.log10(run.environment[name])[:, None]
+                return np.asarray(np.log10(run.environment[name])[:, None])
 
         unit = LOGARITHMIC_COLUMNS[name] if name in LOGARITHMIC_COLUMNS else LOGARITHMIC[ending]
         title = f"{words} [log10 {unit}]"

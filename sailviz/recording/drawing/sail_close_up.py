@@ -172,7 +172,8 @@ def arcs(start: np.ndarray, end: np.ndarray) -> np.ndarray:
     across = end - np.sum(start * end, 1, keepdims=True) * start
     angle = np.arctan2(np.linalg.norm(across, axis=1), np.sum(start * end, 1))
     share = np.linspace(0, 1, ARC) * angle[:, None]
-    return np.cos(share)[..., None] * start[:, None] + np.sin(share)[..., None] * unit(across)[:, None]
+    points: np.ndarray = np.cos(share)[..., None] * start[:, None] + np.sin(share)[..., None] * unit(across)[:, None]
+    return points
 
 
 def angle_texts(name: str, angle: np.ndarray) -> list[str]:

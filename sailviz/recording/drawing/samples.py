@@ -7,6 +7,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import rerun as rr
+from numpy.typing import ArrayLike
 
 from sailviz.constants import AU, ROTATION_EARTH
 from sailviz.elements import Elements, state
@@ -94,9 +96,10 @@ def unit_of(setting: Setting, distance: float) -> tuple[float, str]:
     return 10.0**power, f"10^{power} m"
 
 
-def longitude(elements: Elements):
+def longitude(elements: Elements) -> np.ndarray:
     """True longitude, rad: smooth where an orbit is circular or equatorial, which its parts are not."""
-    return elements.raan + elements.argument + elements.true_anomaly
+    angle: np.ndarray = elements.raan + elements.argument + elements.true_anomaly
+    return angle
 
 
 @dataclass(frozen=True)
@@ -105,7 +108,7 @@ class Samples:
 
     run: Run
     number: np.ndarray  # (n,) of the row in the whole run
-    index: list  # the timelines
+    index: list[rr.TimeColumn]  # the timelines
     position: np.ndarray  # (n, 3) view units, where the craft is drawn
     axes: np.ndarray  # (n, 3, 3) orbital frame at the drawn place, columns
     velocity: np.ndarray  # (n, 3) view units per second, at the drawn place
@@ -117,7 +120,7 @@ class Samples:
     own_place: np.ndarray  # (n,) bool, whether the craft is drawn where it was
 
     @staticmethod
-    def of(run: Run, number, frame: Frame, before=(-np.inf, -np.inf)) -> Samples:
+    def of(run: Run, number: np.ndarray, frame: Frame, before: ArrayLike = (-np.inf, -np.inf)) -> Samples:
         """before : s, times of the two rows drawn before these."""
         position, velocity = run.position, run.velocity
         axes = rtn(position, velocity)
@@ -128,7 +131,7 @@ class Samples:
         primer_rtn = None if primer is None else to_frame(axes, primer)
         close = np.ones(len(run), bool)
         if frame.sparse:
-            times = np.concatenate([before, run.time])
+            times = np.concatenate([np.asarray(before), run.time])
             close = times[1:] - frame.close < times[:-1]
             close = close[1:] & close[:-1]
             even_position, even_velocity = slowed(run, frame)
@@ -163,18 +166,18 @@ class Samples:
         """
         sun = self.run.bodies.get("Sun")
         if sun is None:
-            return self.run.environment.get("sunlit", np.ones(len(self), bool)).astype(bool)
+            return np.asarray(self.run.environment.get("sunlit", np.ones(len(self), bool)), bool)
         away = np.sum(self.position * unit(sun), 1)
         outside = (away > 0) | (np.linalg.norm(self.position - away[:, None] * unit(sun), axis=1) > 1)
         known = self.own_place & ("sunlit" in self.run.environment)
-        return np.where(known, self.run.environment.get("sunlit", outside).astype(bool), outside)
+        return np.asarray(np.where(known, self.run.environment.get("sunlit", outside).astype(bool), outside))
 
-    def index_of(self, some) -> list:
+    def index_of(self, some: slice | np.ndarray) -> list[rr.TimeColumn]:
         """The timelines of some of the rows."""
         return timelines.time_columns(self.run.setting, self.number[some], self.run.time[some])
 
 
-def slowed(run: Run, frame: Frame):
+def slowed(run: Run, frame: Frame) -> tuple[np.ndarray, np.ndarray]:
     """Places and velocities on the osculating orbits that go round evenly, `TURNS` times over the whole run."""
     e = run.elements
     shown = frame.longitude + 2 * np.pi * min(TURNS, frame.turns) * (run.time - frame.start) / frame.duration
@@ -188,7 +191,7 @@ def slowed(run: Run, frame: Frame):
     return np.where(known, position, run.position), np.where(known, velocity, run.velocity)
 
 
-def rings(run: Run, axes, frame: Frame) -> dict[str, np.ndarray]:
+def rings(run: Run, axes: np.ndarray, frame: Frame) -> dict[str, np.ndarray]:
     """What makes a circle of radius 1 in x, y the osculating orbits: translation (n, 3), quaternion (n, 4) and scale
     (n, 3), view units. `axes` (n, 3, 3), columns: the frame in which they are given, z the orbit's normal. Open orbits
     shrink to a point.
@@ -223,13 +226,15 @@ def orbits(run: Run, frame: Frame, count: int = 121) -> np.ndarray:
         closed = (e.eccentricity < 1)[:, None]
         # points of a closed orbit lie evenly about the craft's own place, so that the line meets it
         anomaly = np.where(closed, e.true_anomaly[:, None] + np.pi * (1 + around), limit[:, None] * around)
-        columns = (e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument)
-        line, _ = state(*(column[:, None] for column in columns), anomaly, frame.mu)
+        a, eccentricity, inclination, raan, argument = (
+            column[:, None] for column in (e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument)
+        )
+        line, _ = state(a, eccentricity, inclination, raan, argument, anomaly, frame.mu)
     line = np.where(np.isfinite(line), line, run.position[:, None, :])
-    return line / frame.unit
+    return np.asarray(line / frame.unit)
 
 
-def arc(run: Run, row: int, start, gap: float, frame: Frame) -> np.ndarray:
+def arc(run: Run, row: int, start: np.ndarray, gap: float, frame: Frame) -> np.ndarray:
     """The way to a row on its osculating orbit: from the place nearest to `start` (3,) m, or once round where the gap
     of so many s is longer than that. (k, 3) view units.
     """
@@ -241,10 +246,10 @@ def arc(run: Run, row: int, start, gap: float, frame: Frame) -> np.ndarray:
         behind = 2 * np.pi
     anomaly = e.true_anomaly[row] - behind * np.linspace(1, 0, int(np.ceil(SMOOTH * behind / (2 * np.pi))) + 1)
     line, _ = state(a, eccentricity, e.inclination[row], e.raan[row], e.argument[row], anomaly, frame.mu)
-    return line / frame.unit
+    return np.asarray(line / frame.unit)
 
 
-def smooth_lines(time, position, velocity, pieces: int) -> np.ndarray:
+def smooth_lines(time: np.ndarray, position: np.ndarray, velocity: np.ndarray, pieces: int) -> np.ndarray:
     """Points between rows by cubic Hermite interpolation. (n,), (n, 3), (n, 3) -> ((n - 1) * pieces + 1, 3)."""
     if pieces == 1 or len(time) < 2:
         return position

@@ -7,6 +7,10 @@ plot.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
 import rerun as rr
 
 BACKGROUND = [7, 10, 18]
@@ -117,21 +121,22 @@ PLANETS_WITHIN = 1.15
 NAMES_FROM = 0.18
 
 
-def points(size: float):
+def points(size: float | np.ndarray) -> Any:
     """A radius in ui points, which does not shrink with distance."""
     return rr.Radius.ui_points(size)
 
 
-def dim(color, factor: float = 0.55) -> list[int]:
+def dim(color: Sequence[int], factor: float = 0.55) -> list[int]:
     """The colour as context."""
     return [int(factor * channel) for channel in color[:3]]
 
 
-def rgba(color, alpha: int = 255) -> int:
+def rgba(color: Sequence[int], alpha: int = 255) -> int:
     """0xRRGGBBAA, as columns of colours want it."""
     red, green, blue = (int(channel) for channel in color[:3])
     return (red << 24) | (green << 16) | (blue << 8) | int(alpha)
 
 
 def planet_color(name: str) -> list[int]:
+    """Of a planet, or of anything else that moves."""
     return PLANETS.get(name, REFERENCE)

@@ -154,7 +154,7 @@ class SystemView:
         gaps = np.diff(time)
         arcs = {  # where rows lie far apart on their orbit
             k: arc(samples.run, k, position[k], float(gaps[k]), self._frame)
-            for k in np.flatnonzero(self._wide(samples.run, gaps))
+            for k in np.flatnonzero(self._wide(samples.run, gaps)).tolist()
         }
         whole, rest = divmod(len(samples), STRIP)
         for start, number, length in ((0, whole, STRIP), (whole * STRIP, min(rest, 1), rest)):

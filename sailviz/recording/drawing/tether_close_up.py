@@ -53,7 +53,9 @@ class TetherCloseUp:
             picture.log_scale("/sail/planet/shape", PLANET)
             log_planet(picture, "/sail/planet/shape/globe", first.setting.body.name)
             log_air(picture, "/sail/planet/shape/air", cap(np.radians(50), 20, 96), THIN_AIR)
-        picture.log_lines("/sail/vertical", [[[0, 0, 0], [0, 0, -1.0 * TETHER]]], style.dim(style.REFERENCE, 0.7), 0.8)
+        picture.log_lines(
+            "/sail/vertical", [[[0.0, 0.0, 0.0], [0.0, 0.0, -TETHER]]], style.dim(style.REFERENCE, 0.7), 0.8
+        )
         down = [[0.0, 0.0, -share * TETHER] for share in np.linspace(0.10, 0.95, ARROWS)]
         picture.log_fixed_arrows("/sail/body/force/arrows", down, [1.0, 0, 0], style.THRUST, 1.3)
         picture.log_label_style("/sail/force_name", style.THRUST)
@@ -102,7 +104,8 @@ class TetherCloseUp:
         texts = [f"drag {acceleration_text(a)}" if a > 0 else "no drag" for a in size.tolist()]
         if per_length is not None:
             texts = [f"{1e9 * f:.3g} nN/m" if f > 0 else "no force" for f in per_length.tolist()]
-        place = 0.5 * TETHER * -normal + 10.2 * np.where(np.any(thrust, 1, keepdims=True), unit(thrust), [-1.0, 0, 0])
+        pulled: np.ndarray = np.where(np.any(thrust, 1, keepdims=True), unit(thrust), [-1.0, 0, 0])
+        place = -0.5 * TETHER * normal + 10.2 * pulled
         self._picture.log_labels("/sail/force_name", samples.index, place, texts)
 
     def _add_words(self, samples: Samples, normal: np.ndarray) -> None:

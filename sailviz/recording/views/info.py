@@ -3,28 +3,31 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import pyarrow as pa
 
-from sailviz.recording.comparison.tables import epoch_of, innermost, truth_of, views_of
-from sailviz.recording.reader import Entity, Recording, is_component, read, short
+from sailviz.recording.comparison.tables import epoch_of, innermost, plain, truth_of, views_of
+from sailviz.recording.entity import is_component, short
+from sailviz.recording.reader import FilePath, Recording, read
 from sailviz.words import duration
 
 
-def info(source) -> dict:
+def info(source: FilePath | Recording) -> dict[str, Any]:
     """Everything about a recording that is not its numbers, ready for JSON. source : path or Recording.
 
     Keys: path, bytes, application, contract, title, family, body, craft, rows, span_s, epoch, complete, ended,
     identity, versions, accuracy, events, expectations, views, truth (entity -> column -> kind), picture (entities).
     """
-    recording = source if isinstance(source, Recording) else read(source)
-    scene = _entity(recording, "/scene")
+    recording = read(source)
+    scene: Mapping[str, np.ndarray] = recording.get("/scene", {})
 
-    def told(name, otherwise=None):
-        return _plain(scene[name][0]) if name in scene else otherwise
+    def told(name: str) -> Any:
+        return plain(scene[name][0]) if name in scene else ""
 
-    time = _entity(recording, "/state").get("time_s", np.zeros(0))
+    time = recording["/state"]["time_s"] if "/state" in recording else np.zeros(0)
     epoch, views = epoch_of(recording), views_of(recording)
     truth = truth_of(recording) + [name for name in ("/events",) if name in recording]
     return {
@@ -32,15 +35,15 @@ def info(source) -> dict:
         "bytes": recording.path.stat().st_size,
         "application": recording.application_id,
         "contract": recording.contract,
-        "title": told("title", ""),
-        "family": told("family", ""),
-        "body": told("body", ""),
-        "craft": told("craft_kind", ""),
+        "title": told("title"),
+        "family": told("family"),
+        "body": told("body"),
+        "craft": told("craft_kind"),
         "rows": len(time),
         "span_s": [float(time[0]), float(time[-1])] if len(time) else None,
         "epoch": None if epoch is None else str(epoch.astype("datetime64[ms]")),
         "complete": recording.complete,
-        "ended": told("ended", ""),
+        "ended": told("ended"),
         "identity": recording.identity,
         "versions": recording.versions,
         "accuracy": recording.accuracy,
@@ -52,17 +55,10 @@ def info(source) -> dict:
     }
 
 
-def _entity(recording: Recording, name: str):
-    """An entity, or an empty one where the recording has none of that name."""
-    return recording[name] if name in recording else {}  # noqa: SIM401, a recording has no get
-
-
 def kinds(recording: Recording, name: str) -> dict[str, str]:
     """Column -> what it holds, e.g. "float64 x 3", from the schema of the first rows."""
-    first = next(iter(recording._stream().filter(content=name, is_static=False)), None)
-    entity = Entity(name, [] if first is None else [first])
     found = {}
-    for table in entity._tables:
+    for table in recording.head(name).tables:
         for column in table.column_names:
             kind = table[column].type
             if not is_component(kind):
@@ -74,11 +70,11 @@ def kinds(recording: Recording, name: str) -> dict[str, str]:
     return found
 
 
-def in_words(facts: dict) -> str:
+def in_words(facts: dict[str, Any]) -> str:
     """The same, to be read."""
     lines = [facts["title"] or facts["path"]]
 
-    def say(name, value):
+    def say(name: str, value: str) -> None:
         if value:
             lines.append(f"  {name:<13} {value}")
 
@@ -106,7 +102,7 @@ def in_words(facts: dict) -> str:
     for event in facts["events"]:
         say("event", f"{event['name']} at {duration(event['time_s'])}")
     for item in facts["expectations"]:
-        say("expects", _expectation(item))
+        say("expects", expectation(item))
     say("views", ", ".join(facts["views"]))
     for entity, columns in facts["truth"].items():
         say(entity, ", ".join(f"{name} ({kind})" for name, kind in columns.items()))
@@ -114,16 +110,14 @@ def in_words(facts: dict) -> str:
     return "\n".join(lines)
 
 
-def _expectation(item: dict) -> str:
+def expectation(item: dict[str, Any]) -> str:
+    """What the scene expects of a run."""
     at = item.get("at") or f"t = {duration(item.get('at_time') or 0.0)}"
     within = f"{item['within_percent']:g} %" if item.get("within_percent") else f"{item.get('within') or 0:g}"
     of = f", {item['statistic']} of {item['ensemble']}," if item.get("ensemble") else ""
     return f"{item['quantity']}{of} at {at}: {item['value']:.10g} within {within}"
 
 
-def _plain(value):
-    return value.item() if isinstance(value, np.generic) else value
-
-
-def as_json(facts: dict) -> str:
+def as_json(facts: dict[str, Any]) -> str:
+    """The same, for scripts."""
     return json.dumps(facts, indent=2)

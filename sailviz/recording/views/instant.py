@@ -5,19 +5,19 @@ from __future__ import annotations
 import re
 
 from sailviz.errors import RecordingError
-from sailviz.recording.reader import read
+from sailviz.recording.reader import FilePath, read
 from sailviz.units import UNITS
 from sailviz.words import duration
 
 TIME = UNITS["time"]
+Moment = str | float  # start, end, a fraction, or a time with its unit
 NAMED = {"start": 0.0, "end": 1.0}
 FORM = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([a-zA-Z]*)\s*")
 
 
-def moment(text) -> float | tuple[float, str]:
+def moment(text: Moment) -> float | tuple[float, str]:
     """What a moment means: a fraction of the run, or (seconds since its start, the words). RecordingError otherwise."""
-    if isinstance(text, int | float):
-        text = repr(text)
+    text = text if isinstance(text, str) else repr(text)
     if text.strip().lower() in NAMED:
         return NAMED[text.strip().lower()]
     found = FORM.fullmatch(text)
@@ -34,7 +34,7 @@ def moment(text) -> float | tuple[float, str]:
     return number
 
 
-def fraction_of(path, at) -> float:
+def fraction_of(path: FilePath, at: Moment) -> float:
     """Where a moment lies in a recording: 0 at its first row, 1 at its last."""
     wanted = moment(at)
     if isinstance(wanted, float):

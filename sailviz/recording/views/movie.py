@@ -5,16 +5,24 @@ from __future__ import annotations
 import os
 import tempfile
 import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from sailviz.errors import RecordingError
-from sailviz.recording.views.instant import fraction_of
+from sailviz.recording.reader import FilePath
+from sailviz.recording.views.instant import Moment, fraction_of
+from sailviz.recording.views.screenshot import AGREE as FIRST_AGREE
 from sailviz.recording.views.screenshot import FRAME, Studio
 
+if TYPE_CHECKING:
+    from PIL import Image
+
+Encoder = Callable[[list[Path], Path, float], None]  # frames, file, frames per second
 MOST_FRAMES = 3000
 AGREE = 2  # pictures in a row that must be the same, after the first: the viewer has loaded everything by then
 WEBP_QUALITY = 82  # of 100; thin bright lines on black still have clean edges
@@ -34,17 +42,17 @@ class MovieReport:
 
 
 def make_movie(
-    path,
-    out,
+    path: FilePath,
+    out: FilePath,
     *,
     view: str | None = None,
-    start="start",
-    end="end",
+    start: Moment = "start",
+    end: Moment = "end",
     seconds: float = 8.0,
     fps: float = 12.0,
-    size=(960, 540),
+    size: tuple[int, int] = (960, 540),
     panels: bool = False,
-    progress=None,
+    progress: Callable[[float], None] | None = None,
 ) -> MovieReport:
     """Make a movie of a recording; its format is the ending of `out`: .webp, .gif or .mp4.
 
@@ -62,25 +70,27 @@ def make_movie(
     first, last = fraction_of(path, start), fraction_of(path, end)
     if view is not None:
         size, panels = (size[0] + FRAME[0], size[1] + FRAME[1]), False
-    errors, warnings, frames = {}, {}, []
+    errors: dict[str, None] = {}
+    warnings: dict[str, None] = {}
+    frames: list[Path] = []
     with written_whole(out) as part, tempfile.TemporaryDirectory(prefix="sailviz-") as scratch:
         with Studio(path, size=size, panels=panels) as studio:
             for number, at in enumerate(np.linspace(first, last, count)):
-                patience = {"agree": AGREE} if number else {}
-                report = studio.shoot(Path(scratch) / f"{number:05d}.png", view=view, at=float(at), **patience)
+                agree = AGREE if number else FIRST_AGREE
+                report = studio.shoot(Path(scratch) / f"{number:05d}.png", view=view, at=float(at), agree=agree)
                 frames.append(report.path)
                 errors |= dict.fromkeys(report.errors)
                 warnings |= dict.fromkeys(report.warnings)
                 if progress:
                     progress((number + 1) / (count + 1))  # the encoding counts as a frame
-        with _writing(Path(out)):
+        with writing(Path(out)):
             encode(frames, part, fps)
         if progress:
             progress(1.0)
     return MovieReport(Path(out), report.size, count, tuple(errors), tuple(warnings), time.monotonic() - began)
 
 
-def check_format(out):
+def check_format(out: FilePath) -> Encoder:
     """The encoder for a file's ending. RecordingError where there is none, so that it is known before the work."""
     encoders = {".webp": webp, ".gif": gif, ".mp4": mp4}
     ending = Path(out).suffix.lower()
@@ -91,7 +101,8 @@ def check_format(out):
     return encoders[ending]
 
 
-def ffmpeg():
+def ffmpeg() -> Any:
+    """The package that encodes mp4. RecordingError where the extra is missing."""
     try:
         import imageio_ffmpeg
     except ImportError:
@@ -100,6 +111,7 @@ def ffmpeg():
 
 
 def webp(frames: list[Path], out: Path, fps: float) -> None:
+    """All colours, small."""
     images = [image(frame) for frame in frames]
     images[0].save(
         out,
@@ -129,7 +141,7 @@ def gif(frames: list[Path], out: Path, fps: float) -> None:
     )
 
 
-def palette_of(picture, colours: int):
+def palette_of(picture: Image.Image, colours: int) -> Image.Image:
     """An image whose palette serves a picture: most colours where most pixels are, the others spread over all that
     occur, so that a thin green arrow in a dark sky stays green.
     """
@@ -137,13 +149,15 @@ def palette_of(picture, colours: int):
 
     spread = colours // 3
     parts = ((colours - spread, Image.Quantize.MEDIANCUT), (spread, Image.Quantize.MAXCOVERAGE))
-    chosen = [value for count, method in parts for value in picture.quantize(count, method=method).getpalette()]
+    palettes = [picture.quantize(count, method=method).getpalette() for count, method in parts]
+    chosen = [value for palette in palettes for value in palette or ()]
     holder = Image.new("P", (1, 1))
     holder.putpalette(chosen[: 3 * colours])
     return holder
 
 
 def mp4(frames: list[Path], out: Path, fps: float) -> None:
+    """H.264, for what does not play webp."""
     width, height = image(frames[0]).size
     width, height = width - width % 2, height - height % 2  # H.264 halves the resolution of colours
     writer = ffmpeg().write_frames(
@@ -164,7 +178,8 @@ def mp4(frames: list[Path], out: Path, fps: float) -> None:
         writer.close()
 
 
-def image(path: Path):
+def image(path: Path) -> Image.Image:
+    """A frame."""
     from PIL import Image
 
     with Image.open(path) as opened:
@@ -172,26 +187,27 @@ def image(path: Path):
 
 
 @contextmanager
-def written_whole(path):
+def written_whole(name: FilePath) -> Iterator[Path]:
     """A temporary name beside a file; the file appears under its own when all went well, and not at all otherwise."""
-    path = Path(path)
+    path = Path(name)
     if path.is_dir():
         raise RecordingError(f"cannot write {path}: it is a directory")
     if not path.parent.is_dir():
         raise RecordingError(f"cannot write {path}: there is no directory {path.parent}")
     part = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
     try:
-        with _writing(path):
+        with writing(path):
             part.touch()
         yield part
-        with _writing(path):
+        with writing(path):
             os.replace(part, path)
     finally:
         part.unlink(missing_ok=True)
 
 
 @contextmanager
-def _writing(path: Path):
+def writing(path: Path) -> Iterator[None]:
+    """Let what goes wrong with a file be told in one sentence: RecordingError."""
     try:
         yield
     except OSError as error:

@@ -5,16 +5,16 @@ from __future__ import annotations
 import os
 from contextlib import redirect_stdout
 from io import StringIO
-from pathlib import Path
+from typing import Any
 
 from sailviz.errors import RecordingError
-from sailviz.recording.reader import Recording, read
+from sailviz.recording.reader import FilePath, Recording, read
 from sailviz.run.arrays import Run
 
 ASSET = "RERUN_NOTEBOOK_ASSET"
 
 
-def show(source, *, width: int | str = "auto", height: int | str = 640):
+def show(source: Run | Recording | FilePath, *, width: int | str = "auto", height: int | str = 640) -> Any:
     """Rerun's viewer as a notebook widget, with everything in it; the last line of a cell shows it.
 
     source : a Run, a path, or what `read` returned; width, height : pixels, or "auto" for the cell's width
@@ -27,7 +27,7 @@ def show(source, *, width: int | str = "auto", height: int | str = 640):
     return viewer
 
 
-def viewer_class():
+def viewer_class() -> Any:
     """Rerun's widget. It decides on import where its code comes from: from here, unless the user decided otherwise."""
     os.environ.setdefault(ASSET, "serve-local")
     try:
@@ -40,7 +40,7 @@ def viewer_class():
     return Viewer
 
 
-def as_bytes(source) -> bytes:
+def as_bytes(source: Run | Recording | FilePath) -> bytes:
     """A recording as it would be in a file."""
     if isinstance(source, Run):
         from sailviz.recording.sinks import Memory
@@ -53,4 +53,4 @@ def as_bytes(source) -> bytes:
         source = read(source)
     if not isinstance(source, Recording):
         raise RecordingError(f"a notebook shows a Run, a path or a Recording, not a {type(source).__name__}")
-    return Path(source.path).read_bytes()
+    return source.path.read_bytes()

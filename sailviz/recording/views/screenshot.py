@@ -8,19 +8,22 @@ import contextlib
 import copy
 import io
 import os
-import socket
 import subprocess
 import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
 from sailviz.errors import RecordingError
-from sailviz.recording.reader import read
-from sailviz.recording.sinks import viewer_binary
+from sailviz.recording.reader import FilePath, read
+from sailviz.recording.sinks import reason, viewer_binary
+from sailviz.recording.views.viewers import free_port
+
+if TYPE_CHECKING:
+    from rerun.experimental import ViewerClient
 
 PACKAGES = "libvulkan1 mesa-vulkan-drivers"
 START, SETTLE = 60.0, 25.0  # s to wait for the viewer, and for a picture that no longer changes
@@ -40,7 +43,15 @@ class PictureReport:
     seconds: float
 
 
-def picture(path, png, *, view: str | None = None, at=1.0, size=(1600, 900), panels: bool = True) -> PictureReport:
+def picture(
+    path: FilePath,
+    png: FilePath,
+    *,
+    view: str | None = None,
+    at: float | str = 1.0,
+    size: tuple[int, int] = (1600, 900),
+    panels: bool = True,
+) -> PictureReport:
     """Take one picture of a recording.
 
     view : the start of a view's name (System, From the pole, Follow, ...) to have it alone, None for the whole window
@@ -58,18 +69,17 @@ class Studio:
     studio.shoot("a.png")`.
     """
 
-    def __init__(self, path, *, size=(1600, 900), panels: bool = True):
+    def __init__(self, path: FilePath, *, size: tuple[int, int] = (1600, 900), panels: bool = True):
         read(path)  # says in one sentence what cannot be shown
         self._path, self._panels = Path(path).resolve(), panels
         self._size = (int(size[0]), int(size[1]) + (0 if panels else BAR))
-        self._client = None
 
     def __enter__(self) -> Self:
         check_vulkan()
         self._scratch = tempfile.TemporaryDirectory(prefix="sailviz-")
         self._process, port = start_viewer(self._path, self._size, self._scratch.name)
         try:
-            state = self._wait_for_viewer(f"rerun+http://127.0.0.1:{port}/proxy")
+            self._client, state = self._wait_for_viewer(f"rerun+http://127.0.0.1:{port}/proxy")
         except BaseException:
             self._stop()
             raise
@@ -77,21 +87,22 @@ class Studio:
         timelines = {timeline.name: timeline for timeline in recording.timelines}
         self._timeline = timelines[recording.current_timeline]
         self._blueprint = self._client.get_blueprint().blueprint
-        self._shown = None
+        self._shown: tuple[str | None, str | None] | None = None
         return self
 
-    def _wait_for_viewer(self, url: str):
+    def _wait_for_viewer(self, url: str) -> tuple[ViewerClient, Any]:
+        """The viewer, and its state once it shows the recording."""
         from rerun.experimental import ViewerClient
 
-        started = time.monotonic()
+        started, client = time.monotonic(), None
         while time.monotonic() - started < START:
             if self._process.poll() is not None:
                 raise RecordingError(f"the viewer ended at once; it may want the packages {PACKAGES}")
             with contextlib.suppress(Exception):  # not up yet
-                self._client = self._client or ViewerClient.connect(url)
-                state = self._client.get_state()
+                client = client or ViewerClient.connect(url)
+                state = client.get_state()
                 if state.active_recording and not state.loading and any(r.timelines for r in state.recordings):
-                    return state
+                    return client, state
             time.sleep(0.05)
         raise RecordingError(f"the viewer did not show {self._path} within {START:.0f} s")
 
@@ -105,10 +116,18 @@ class Studio:
         parts = {path: part["ViewBlueprint"] for path, part in self._blueprint.items() if "ViewBlueprint" in part}
         return {part.get("display_name", path): path.rsplit("/", 1)[-1] for path, part in parts.items()}
 
-    def __exit__(self, *_) -> None:
+    def __exit__(self, *_: object) -> None:
         self._stop()
 
-    def shoot(self, png, *, view: str | None = None, at=1.0, active: str | None = None, agree=AGREE) -> PictureReport:
+    def shoot(
+        self,
+        png: FilePath,
+        *,
+        view: str | None = None,
+        at: float | str = 1.0,
+        active: str | None = None,
+        agree: int = AGREE,
+    ) -> PictureReport:
         """Take a picture of the window, or of one view alone; `active` is the start of the name of the tab in front."""
         started = time.monotonic()
         identity = self._show(view, active)
@@ -119,7 +138,7 @@ class Studio:
         try:
             Path(png).write_bytes(image)
         except OSError as error:
-            raise RecordingError(f"cannot write the picture {png}: {error.strerror.lower()}") from None
+            raise RecordingError(f"cannot write the picture {png}: {reason(error)}") from None
         reports = [(v.name, r) for v in self._client.get_state().views for r in v.reports]
         errors = tuple(f"{name}: {r.summary}" for name, r in reports if r.severity == "error")
         warnings = tuple(f"{name}: {r.summary}" for name, r in reports if r.severity != "error")
@@ -155,7 +174,7 @@ class Studio:
             self._shown = wanted
         return alone
 
-    def _go(self, at) -> None:
+    def _go(self, at: float | str) -> None:
         """Put the time cursor at a fraction of the run."""
         try:
             fraction = {"start": 0.0, "end": 1.0}[at] if isinstance(at, str) else float(at)
@@ -165,14 +184,14 @@ class Studio:
             ) from None
         timeline = self._timeline
         value = int(timeline.start + (timeline.end - timeline.start) * min(max(fraction, 0.0), 1.0))
-        place = {
-            "sequence": lambda: {"sequence": value},
-            "duration": lambda: {"duration": np.timedelta64(value, "ns")},
-            "timestamp": lambda: {"timestamp": np.datetime64(value, "ns")},
-        }[timeline.time_type]()
+        place: dict[str, Any] = {"sequence": value}
+        if timeline.time_type == "duration":
+            place = {"duration": np.timedelta64(value, "ns")}
+        elif timeline.time_type == "timestamp":
+            place = {"timestamp": np.datetime64(value, "ns")}
         self._client.set_time(timeline.name, play_state="paused", **place)
 
-    def _settled(self, view_id, agree: int) -> bytes:
+    def _settled(self, view_id: str | None, agree: int) -> bytes:
         """A screenshot once it no longer changes: chunks are loaded lazily."""
         last, same, started = b"", 1, time.monotonic()
         while time.monotonic() - started < SETTLE:
@@ -194,11 +213,9 @@ class Studio:
         self._scratch.cleanup()
 
 
-def start_viewer(path: Path, size, scratch: str):
+def start_viewer(path: Path, size: tuple[int, int], scratch: str) -> tuple[subprocess.Popen[bytes], int]:
     """Start Rerun's own binary headless -> process, port."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        port = probe.getsockname()[1]
+    port = free_port()
     environment = dict(os.environ, RUST_LOG="error", RERUN_ANALYTICS="0")
     environment.setdefault("XDG_RUNTIME_DIR", scratch)
     command = [viewer_binary(), "--headless", "--bind", "127.0.0.1", "--port", str(port)]

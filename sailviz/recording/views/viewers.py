@@ -10,13 +10,14 @@ import sys
 import time
 import urllib.error
 import urllib.request
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Self
 from urllib.parse import quote
 
 from sailviz.errors import RecordingError
-from sailviz.recording.reader import read
+from sailviz.recording.reader import FilePath, read
 from sailviz.recording.sinks import viewer_binary
 
 START = 30.0  # s to wait for the server
@@ -30,7 +31,7 @@ class WebServer:
     Raises RecordingError where a file is no recording, a port is taken, or the server does not come up.
     """
 
-    def __init__(self, *paths, port: int = 0, data_port: int = 0, host: str = "127.0.0.1"):
+    def __init__(self, *paths: FilePath, port: int = 0, data_port: int = 0, host: str = "127.0.0.1"):
         for path in paths:
             read(path)  # says in one sentence what cannot be shown
         self._paths = [Path(path).resolve() for path in paths]
@@ -64,7 +65,7 @@ class WebServer:
             raise
         return self
 
-    def __exit__(self, *_) -> None:
+    def __exit__(self, *_: object) -> None:
         end(self._process)
 
     def wait(self) -> None:
@@ -85,16 +86,18 @@ class WebServer:
         raise RecordingError(f"the server for the browser did not answer within {START:.0f} s")
 
 
-def serve(*paths, port: int = 0, data_port: int = 0, started=lambda url: None) -> None:
+def serve(
+    *paths: FilePath, port: int = 0, data_port: int = 0, started: Callable[[str], None] = lambda url: None
+) -> None:
     """Serve recordings to browsers until Ctrl-C, or until the process is asked to end. started : called with the
     address once it answers.
     """
-    with _asked_to_end(), suppress(KeyboardInterrupt), WebServer(*paths, port=port, data_port=data_port) as server:
+    with asked_to_end(), suppress(KeyboardInterrupt), WebServer(*paths, port=port, data_port=data_port) as server:
         started(server.url)
         server.wait()
 
 
-def open_viewer(*paths) -> None:
+def open_viewer(*paths: FilePath) -> None:
     """Show recordings in the native viewer and wait until its window is closed; each keeps the layout of its family.
 
     Raises RecordingError where a file is no recording, or there is no screen.
@@ -117,16 +120,19 @@ def open_viewer(*paths) -> None:
 
 
 def viewer_environment() -> dict[str, str]:
+    """What Rerun's viewer is started with: it tells nobody anything, and says only what fails."""
     return dict(os.environ, RERUN_ANALYTICS="0", RUST_LOG=os.environ.get("RUST_LOG", "error"))
 
 
 def free_port(host: str = "127.0.0.1") -> int:
+    """A port on which nobody listens."""
     with socket.socket() as probe:
         probe.bind((host, 0))
-        return probe.getsockname()[1]
+        return int(probe.getsockname()[1])
 
 
 def check_free(host: str, port: int) -> None:
+    """Raise RecordingError where somebody listens on a port."""
     with socket.socket() as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
@@ -135,7 +141,7 @@ def check_free(host: str, port: int) -> None:
             raise RecordingError(f"cannot listen on {host}:{port}: {(error.strerror or str(error)).lower()}") from None
 
 
-def end(process: subprocess.Popen) -> None:
+def end(process: subprocess.Popen[bytes]) -> None:
     """End a process of ours, politely first."""
     if process.poll() is None:
         process.terminate()
@@ -147,10 +153,10 @@ def end(process: subprocess.Popen) -> None:
 
 
 @contextmanager
-def _asked_to_end():
+def asked_to_end() -> Iterator[None]:
     """Let SIGTERM end the body as Ctrl-C does, so that no server is left behind."""
 
-    def interrupt(*_):
+    def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
     try:

@@ -107,7 +107,7 @@ def test_a_flipped_arrow_of_the_picture_alone_is_found(runs, recorded, tmp_path)
         rows = rr.TimeColumn("sim_time", duration=[np.timedelta64(round(run.time[30] * 1e9), "ns")])
         utc = rr.TimeColumn("utc", timestamp=[run.setting.epoch + np.timedelta64(round(run.time[30] * 1e9), "ns")])
         arrow = rr.Arrows3D.columns(vectors=[[1.0, 0.0, 0.0]])
-        recorder._stream.send_columns("/world/craft/thrust/arrow", [time, rows, utc], arrow)
+        recorder._growing.stream.send_columns("/world/craft/thrust/arrow", [time, rows, utc], arrow)
     found = compare(before, tmp_path / "flipped.rrd")
     assert all(d.equal for d in found.quantities)
     assert {d.quantity for d in found.picture} == {"/world/craft/thrust/arrow:vectors"}

@@ -1,0 +1,125 @@
+"""A recording that is open: what is written of each block, and how it ends."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import rerun as rr
+
+from sailviz.errors import PropagationError, RecordingError
+from sailviz.recording import contract, timelines
+from sailviz.recording.drawing.drawing import Drawing
+from sailviz.recording.sinks import File, Memory, Opened, Web, attach, web_address
+from sailviz.run.arrays import Event, Run
+
+
+class GrowingRecording:
+    """The stream of a recording, from its first block on. `last` is the last row that was written."""
+
+    def __init__(self, first: Run, sinks: Sequence[Opened]):
+        self.rows = 0
+        self.last: Run | None = None
+        self._sinks = sinks
+        self._setting = setting = first.setting
+        self._ended = ""
+        self._events: list[Event] = []  # those that lie after the last row seen
+        # the viewer keeps one arrangement of views for each application: each scene needs its own
+        application = f"sailviz_{setting.family}_{setting.identity[:8]}"
+        self.stream = rr.RecordingStream(application, recording_id=setting.identity, send_properties=False)
+        self.stream.set_log_time_enabled(False)
+        self.stream.set_log_tick_enabled(False)
+        self._attached = attach(self.stream, sinks)
+        self.stream.send_recording_name(setting.title)
+        try:
+            self._drawing = Drawing(self.stream, first)
+        except BaseException:
+            self.stream.disconnect()
+            raise
+
+    @property
+    def url(self) -> str:
+        """Where a browser finds it, "" where none is served."""
+        web = next((sink for sink in self._sinks if isinstance(sink, Web)), None)
+        return web_address(web, self._attached) if web and isinstance(self._attached, rr.GrpcServerSink) else ""
+
+    @property
+    def identity(self) -> str:
+        """Hash of the resolved scene."""
+        return self._setting.identity
+
+    def add(self, block: Run) -> None:
+        """The next rows."""
+        index = timelines.time_columns(self._setting, self.rows + np.arange(len(block)), block.time)
+        for entity, table in contract.tables(block).items():
+            if table:
+                self.stream.send_columns(entity, index, contract.columns(entity, table))
+        self._add_events(block)
+        self._drawing.add(block)
+        first = self.last is None
+        self.rows += len(block)
+        self._ended = block.ended
+        self.last = replace(timelines.take(block, slice(-1, None)), first=self.rows - 1, events=())
+        if first:
+            self._write_scene(complete=False)  # so that a recording cut off by a crash still says what it was
+        self._flush()
+
+    def finish(self, last: Run, note: str, complete: bool) -> tuple[Path, ...]:
+        """Write what waits for the end, and `note` as an event at the last row -> files under their names."""
+        if note:
+            self._events.append(event_at(last, note))
+        self._write_events(self._events, np.full(len(self._events), self.rows - 1))
+        self._drawing.finish(last)
+        self._write_scene(complete)
+        if isinstance(self._attached, rr.MemoryRecording) and isinstance(self._sinks[0], Memory):
+            self._flush()
+            self._sinks[0].bytes = self._attached.drain_as_bytes()
+        if any(isinstance(sink, Web) for sink in self._sinks):
+            self._flush()  # disconnecting would stop the server; Recorded.serve does it
+        else:
+            self.stream.disconnect()
+        files = [sink for sink in self._sinks if isinstance(sink, File)]
+        for file in files:
+            file.publish()
+        return tuple(file.path for file in files)
+
+    def _flush(self) -> None:
+        try:
+            self.stream.flush(timeout_sec=60)
+        except RuntimeError as error:
+            raise RecordingError(f"the recording could not be written: {str(error).splitlines()[0]}") from None
+
+    def _add_events(self, block: Run) -> None:
+        """Write the events that have a row at or after them by now; keep the others."""
+        due = sorted([*self._events, *block.events], key=lambda event: event.time)
+        row = np.searchsorted(block.time, [event.time for event in due], side="left")
+        count = int(np.sum(row < len(block)))
+        self._write_events(due[:count], self.rows + row[:count])
+        self._events = due[count:]
+
+    def _write_events(self, events: list[Event], number: np.ndarray) -> None:
+        if not events:
+            return
+        index = timelines.time_columns(self._setting, number, [event.time for event in events])
+        self.stream.send_columns("/events", index, contract.event_columns(events))
+        self._drawing.add_events(events, index)
+
+    def _write_scene(self, complete: bool) -> None:
+        scene = contract.scene(self._setting, rows=self.rows, complete=complete, ended=self._ended)
+        self.stream.log("/scene", scene, static=True)
+
+
+def event_at(row: Run, name: str) -> Event:
+    """An event at the only row of a run."""
+    return Event(name, float(row.time[0]), np.concatenate([row.position[0], row.velocity[0], row.mass]))
+
+
+def why(error: BaseException | None, last: Run) -> str:
+    """Why a recording ends at its last row, for the event that says so."""
+    if isinstance(error, KeyboardInterrupt):
+        return f"interrupted at t = {last.time[0]:.6g} s ({last.time[0] / 86400:.4g} d)"
+    if isinstance(error, PropagationError):
+        return str(error)
+    return f"stopped by {type(error).__name__}: {error}"

@@ -1,0 +1,156 @@
+"""Steering towards a primer, by brute force."""
+
+from __future__ import annotations
+
+import numpy as np
+from independent.constants import AU, FILMS, MU_SUN
+from independent.film import Force, esail_force, film_force, film_of
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+
+def most_along(scene, r_hat, primer):
+    """The normal of the most thrust along a primer, zero where there is none: the attitudes are tried."""
+    size = np.linalg.norm(primer)
+    if size == 0:
+        return np.zeros(3)
+    along = r_hat @ primer / size
+    across = primer / size - along * r_hat
+    pitch = best_pitch(shape_of(scene), np.arctan2(np.linalg.norm(across), along))
+    if pitch is None:
+        return np.zeros(3)
+    return np.cos(pitch) * r_hat + np.sin(pitch) * across / (np.linalg.norm(across) or 1.0)
+
+
+def shape_of(scene):
+    """pitch -> force along and across the Sun line of the sail that the law reckons with."""
+    other = scene.steering.reckons_with
+    if other is None:
+        if scene.device.kind == "electric-sail":
+            assert scene.device.model == "final"
+            return esail_force
+        film = film_of(scene.device)
+    elif other == "electric-sail":
+        return esail_force
+    else:
+        film = FILMS[other]
+
+    def shape(pitch):
+        light, along = film_force(film, np.cos(pitch))
+        return Force((light + along * np.cos(pitch), along * np.sin(pitch)))
+
+    return shape
+
+
+PITCHES = np.radians(np.linspace(0, 90, 181))
+
+
+def best_pitch(shape, angle):
+    """Pitch of the most force along a primer at an angle from the Sun line, None where every force is against it."""
+
+    def gain(pitch):
+        along, across = shape(pitch)
+        return np.cos(angle) * along + np.sin(angle) * across
+
+    k = int(np.argmax(gain(PITCHES)))
+    low, high = PITCHES[max(k - 1, 0)], PITCHES[min(k + 1, 180)]
+    pitch = PITCHES[k]
+    if k < 180 and angle > 0:
+        pitch = brentq(lambda x: gain(x + 1e-30j).imag, low, high, xtol=1e-16, rtol=1e-15)
+    return pitch if gain(pitch) > 0 else None
+
+
+def optimal_primer(scene, t, r, v):
+    """The primer in time of the flight that the scene's costates begin, of the sail that the law reckons with."""
+    key = scene.identity()
+    if key not in FLOWN:
+        FLOWN[key] = costate_flight(scene, r, v)  # asked first at the start
+    return FLOWN[key](t)[9:]
+
+
+FLOWN = {}
+
+
+def costate_flight(scene, r, v):
+    """Dense state and costates: H = lam_r v + lam_v (a_gravity + a_thrust) is largest and constant."""
+    shape, numbers = shape_of(scene), scene.steering.costates
+    power, strength = shape(0.0).exponent, scene.device.characteristic_acceleration
+    u = r / np.linalg.norm(r)
+    if len(numbers) == 3:
+        unit = np.linalg.norm(r)
+        speed = np.sqrt(MU_SUN / unit)
+        along = np.cross(np.cross(r, v), u) / np.linalg.norm(np.cross(r, v))
+        lam_r, lam_u, lam_v = numbers
+        lam = [lam_r * u + (lam_u * (v @ along) - lam_v * (v @ u)) / speed * along, lam_u * u + lam_v * along]
+    else:
+        unit, speed = AU, np.sqrt(MU_SUN / AU)
+        lam = np.reshape(numbers, (2, 3))
+    start = np.concatenate([r, v, lam[0] * speed / unit, lam[1]])
+
+    def rates(t, y):
+        r, v, lam_r, lam_v = y.reshape(4, 3)
+        distance, size = np.linalg.norm(r), np.linalg.norm(lam_v)
+        u = r / distance
+        c = u @ lam_v / size
+        across = lam_v / size - c * u
+        s = np.linalg.norm(across)
+        pitch = best_pitch(shape, np.arctan2(s, c))
+        f_r, f_t = (0.0, 0.0) if pitch is None else shape(pitch)
+        full = strength * (AU / distance) ** power
+        a = -MU_SUN * r / distance**3 + full * (f_r * u + f_t * across / s)
+        pull = MU_SUN * (lam_v / distance**3 - 3 * (lam_v @ r) * r / distance**5)
+        # the support function h(c) = c f_r + s f_t at its maximum has the slope f_r - f_t c / s
+        h, slope = c * f_r + s * f_t, f_r - f_t * c / s
+        push = full * size / distance * (slope * across - power * h * u)
+        return np.concatenate([v, a, pull - push, -lam_r])
+
+    scale = np.repeat([np.linalg.norm(x) for x in start.reshape(4, 3)], 3)
+    span = (0.0, scene.propagation.duration)
+    return solve_ivp(rates, span, start, "DOP853", rtol=1e-13, atol=1e-15 * scale, dense_output=True).sol
+
+
+def steepest(function, r, v):
+    """Gradient over the velocity, by complex steps."""
+    step = 1e-20j * np.linalg.norm(v)
+    return np.array([function(r, v + step * axis).imag for axis in np.eye(3)]) / abs(step)
+
+
+def local_primer(scene, t, r, v):
+    if scene.steering.goal != "inclination":
+        raise NotImplementedError(scene.steering.goal)
+
+    def inclination(r, v):
+        h = np.cross(r, v)
+        return np.arctan(np.sqrt(h[0] ** 2 + h[1] ** 2) / h[2]) if abs(h[2]) > abs(h[0]) else np.arccos(h[2] / root(h))
+
+    return (1 if scene.steering.sense == "increase" else -1) * steepest(inclination, r, v)
+
+
+def root(x):
+    """Length of a complex vector, without conjugation."""
+    return np.sqrt(np.sum(x * x))
+
+
+def lyapunov_primer(scene, t, r, v):
+    law = scene.steering
+    tangent, longitude = np.tan(law.inclination / 2), law.raan + law.argument
+    p = law.semi_major_axis * (1 - law.eccentricity**2)
+    target = [1.0, law.eccentricity * np.cos(longitude), law.eccentricity * np.sin(longitude)]
+    target += [tangent * np.cos(law.raan), tangent * np.sin(law.raan)]
+
+    def value(r, v):
+        h_vec = np.cross(r, v)
+        w = h_vec / root(h_vec)
+        h, k = -w[1] / (1 + w[2]), w[0] / (1 + w[2])
+        e = np.cross(v, h_vec) / MU_SUN - r / root(r)
+        size = 1 + h * h + k * k
+        f_hat, g_hat = np.array([1 + h * h - k * k, 2 * h * k, -2 * k]), np.array([2 * h * k, 1 - h * h + k * k, 2 * h])
+        now = np.array([np.sum(h_vec**2) / MU_SUN / p, np.sum(e * f_hat) / size, np.sum(e * g_hat) / size, h, k])
+        return np.sum(law.weights * (now - target) ** 2)
+
+    if value(r, v) <= law.within**2:
+        return np.zeros(3)
+    return -steepest(value, r, v)
+
+
+PRIMERS = {"optimal": optimal_primer, "locally-optimal": local_primer, "lyapunov": lyapunov_primer}

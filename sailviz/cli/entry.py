@@ -1,41 +1,52 @@
 """The command line: the same verbs as the Python interface.
 
 Exit codes: 0 all went well, 1 an expectation of a scene failed, 2 bad input, 3 the propagation or the recording failed,
-130 interrupted. Heavy modules are imported by the command that needs them, so that `sailviz check` answers at once.
+130 interrupted. A command is imported when it is asked for, and imports heavy modules when it runs, so that `sailviz
+check` answers at once.
 """
 
 from __future__ import annotations
 
+from importlib import import_module
+
 import click
 
-from sailviz.cli.check import check
-from sailviz.cli.compare import compare
-from sailviz.cli.digest import digest
-from sailviz.cli.export import export
-from sailviz.cli.figure import figure
-from sailviz.cli.gallery import gallery
-from sailviz.cli.info import info
-from sailviz.cli.list import list_scenes
-from sailviz.cli.picture import picture
-from sailviz.cli.run import run
-from sailviz.cli.schema import schema
-from sailviz.cli.show import show
-from sailviz.cli.sweep import sweep
-from sailviz.cli.transfer import transfer
-from sailviz.cli.view import view
-from sailviz.cli.web import web
-
-COMMANDS = (
-    check, compare, digest, export, figure, gallery, info, list_scenes, picture, run, schema, show, sweep, transfer,
-    view, web,
-)  # fmt: skip
+COMMANDS = {  # name, which is also that of the module -> function there
+    "check": "check",
+    "compare": "compare",
+    "digest": "digest",
+    "export": "export",
+    "figure": "figure",
+    "gallery": "gallery",
+    "info": "info",
+    "list": "list_scenes",
+    "picture": "picture",
+    "run": "run",
+    "schema": "schema",
+    "show": "show",
+    "sweep": "sweep",
+    "transfer": "transfer",
+    "view": "view",
+    "web": "web",
+}
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+class Verbs(click.Group):
+    """The commands of this folder."""
+
+    def list_commands(self, context: click.Context) -> list[str]:
+        """All there are, in the order in which --help tells them."""
+        return sorted(COMMANDS)
+
+    def get_command(self, context: click.Context, name: str) -> click.Command | None:
+        """The command of that name, imported now; for a name that there is not, all of them, to find the nearest."""
+        for known in [name] if name in COMMANDS else COMMANDS:
+            if known not in self.commands:
+                self.add_command(getattr(import_module(f"sailviz.cli.{known}"), COMMANDS[known]))
+        return super().get_command(context, name)
+
+
+@click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(package_name="sailviz")
 def main() -> None:
     """Trajectories of solar sails, electric sails and plasma brakes: computed, recorded, replayed."""
-
-
-for _command in COMMANDS:
-    main.add_command(_command)

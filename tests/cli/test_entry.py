@@ -11,6 +11,7 @@ import time
 import tomllib
 from pathlib import Path
 
+import click
 import jsonschema
 import pytest
 from click.testing import CliRunner
@@ -54,10 +55,23 @@ def test_the_entry_is_one_function_however_it_is_reached():
     assert done.stdout.splitlines()[0].startswith("deorbit/aalto-1")
 
 
-def test_every_command_lives_in_a_file_of_its_name():
-    assert {name: command.callback.__module__ for name, command in main.commands.items()} == {
-        name: f"sailviz.cli.{name}" for name in main.commands
-    }
+def test_every_command_lives_in_a_file_of_its_name_which_is_read_when_it_is_asked_for():
+    context = click.Context(main)
+    for name in main.list_commands(context):
+        command = main.get_command(context, name)
+        assert (command.name, command.callback.__module__) == (name, f"sailviz.cli.{name}")
+    program = (
+        "import sys; from sailviz.cli import main; main(['check', 'displaced/circular'], standalone_mode=False);"
+        "print(*(m for m in sys.modules if m.startswith('sailviz.cli.')))"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert set(done.stdout.split("\n")[-2].split()) == {f"sailviz.cli.{name}" for name in ("entry", "check", "shared")}
+
+
+def test_a_command_that_there_is_not_is_answered_with_the_nearest(shell):
+    result = shell("chek")
+    assert result.exit_code == 2
+    assert "check" in result.stderr
 
 
 def test_click_is_known_to_the_command_line_only():
@@ -177,10 +191,10 @@ def test_every_shipped_scene_is_listed_by_name(shell):
     assert [line.split()[0] for line in lines] == list(shipped_scenes())
 
 
-def test_check_imports_neither_rerun_nor_numba_nor_scipy(tmp_path):
+def test_check_imports_nothing_heavy(tmp_path):
     program = (
-        "import sys; from sailviz.cli.main import main; main(['check', 'displaced/circular'], standalone_mode=False);"
-        "print([m for m in ('rerun', 'numba', 'scipy') if m in sys.modules])"
+        "import sys; from sailviz.cli import main; main(['check', 'displaced/circular'], standalone_mode=False);"
+        "print([m for m in ('rerun', 'numba', 'scipy', 'numpy', 'trimesh') if m in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"

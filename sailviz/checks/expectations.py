@@ -11,6 +11,7 @@ import numpy as np
 from sailviz.checks.closed_forms import FORMS, Motion, error
 from sailviz.elements import elements
 from sailviz.run.arrays import Attitude, Event, Run, Thrust
+from sailviz.run.quantities import arc, circular_mean, unwrapped
 from sailviz.scene.loading import Scene
 from sailviz.scene.quantities import of_ensemble, spellings
 from sailviz.scene.sections import STATISTICS_OF_ROWS, Expectation
@@ -19,27 +20,35 @@ from sailviz.scene.sections import STATISTICS_OF_ROWS, Expectation
 @dataclass(frozen=True)
 class Verdict:
     """One expectation and what came of it; value and tolerance in the quantity's unit, measured NaN if it never
-    came."""
+    came. turn : what an angle that counts modulo a turn is counted by, infinite for everything else."""
 
     quantity: str
     at: str
     expected: float
     tolerance: float
     measured: float
+    turn: float = np.inf
+
+    @property
+    def off(self) -> float:
+        """Measured less expected, for an angle along the shortest arc."""
+        return float(arc(self.measured, self.expected, self.turn))
 
     @property
     def passed(self) -> bool:
         """Whether the measured value lies within the tolerance."""
-        return bool(abs(self.measured - self.expected) <= self.tolerance)
+        return bool(abs(self.off) <= self.tolerance)
 
     @property
     def miss(self) -> str:
         """How far the measured value is from the expected one, in words."""
         if np.isnan(self.measured):
-            if self.at == "drift":
+            if self.at == "mean" and np.isfinite(self.turn):
+                return "it goes all round or is never a number: no mean"
+            if self.at == "drift" and not np.isfinite(self.turn):
                 return "it starts at 0 or is never a number: no relative drift"
             return "it is never a number" if self.at in STATISTICS_OF_ROWS else "this moment never came"
-        return f"off by {self.measured - self.expected:+.2g}"
+        return f"off by {self.off:+.2g}"
 
     def __str__(self) -> str:
         sign = "ok  " if self.passed else "FAIL"
@@ -79,6 +88,12 @@ class Reckoning:
         self._first = float("nan")  # value of the first row, for the drift
         self._last = float("nan")  # of the last row so far, for the mean and for times between blocks
         self._area = 0.0  # integral over time so far, for the mean
+        self._vector = np.zeros(2)  # the same of (cosine, sine) of an angle that counts modulo a turn
+
+    @property
+    def turn(self) -> float:
+        """After which the value is the same again, infinite if never."""
+        return self.quantity.turn
 
     def add(self, block: Block) -> None:
         """Look at the next block of the run."""
@@ -117,25 +132,38 @@ class Reckoning:
         self.found = float(np.fmax(self.found, np.fmax.reduce(block.values(self))))
 
     def drift(self, block: Block) -> None:
-        """The largest relative distance from the first row."""
-        values = block.values(self)
+        """The largest relative distance from the first row; of an angle on a circle the largest arc, in its unit."""
+        values, turn = block.values(self), self.turn
         self._first = first = float(values[0]) if block.begins else self._first
-        if first != 0 and np.isfinite(first):
+        if np.isfinite(turn):
+            if np.isfinite(first):
+                away = np.abs(arc(values, first, turn))
+                self.found = float(np.fmax(self.found, np.nanmax(away, initial=0.0)))
+        elif first != 0 and np.isfinite(first):
             self.found = float(np.fmax(self.found, np.nanmax(np.abs(values / first - 1), initial=0.0)))
 
     def mean(self, block: Block) -> None:
-        """The mean over time, by trapezoids."""
+        """The mean over time, by trapezoids; of an angle on a circle the direction of its mean unit vector."""
         time, values = self._with_last_row(block)
-        self._area += float(np.trapezoid(values, time))
         span = time[-1] - block.start
+        if np.isfinite(self.turn):
+            angle = 2 * np.pi * values / self.turn
+            vectors = np.stack([np.cos(angle), np.sin(angle)])
+            self._vector += np.trapezoid(vectors, time, axis=1)
+            cosine, sine = self._vector / span if span > 0 else vectors[:, -1]
+            self.found = circular_mean(float(cosine), float(sine), self.turn)
+            return
+        self._area += float(np.trapezoid(values, time))
         self.found = self._area / span if span > 0 else float(values[-1])
 
     def at_time(self, block: Block) -> None:
-        """The value at a time, by straight lines between the rows, those of two blocks included."""
+        """The value at a time, by straight lines between the rows, those of two blocks included; of an angle on a
+        circle along the shortest arc."""
         time, values = self._with_last_row(block)
         moment = self.item.at_time or 0.0
         if time[0] <= moment <= time[-1]:
-            self._first_known(float(np.interp(moment, time, values)))
+            value = float(np.interp(moment, time, unwrapped(values, self.turn)))
+            self._first_known(value % self.turn if np.isfinite(self.turn) else value)
 
     def event(self, block: Block) -> None:
         """At the first event of the name."""
@@ -229,6 +257,7 @@ class Judge:
                 one.item.value,
                 _tolerance(one.item),
                 one.found,
+                one.turn,
             )
             for one in self._reckonings
         ]

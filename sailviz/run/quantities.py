@@ -9,7 +9,31 @@ import numpy as np
 from sailviz.elements import Elements
 from sailviz.run.arrays import Run
 
+FULL_CIRCLE = 1e-6  # length of the mean of unit vectors below which angles go all round and have no mean
+
 Value = Callable[[Run], np.ndarray]  # one number per row, SI
+
+
+def arc(value: np.ndarray | float, origin: np.ndarray | float, turn: float = np.inf) -> np.ndarray:
+    """The way from an origin to a value, (...,): along the shortest arc, -turn / 2 to turn / 2, of what is the same
+    after a turn; the plain difference where the turn is infinite."""
+    difference = np.asarray(value, float) - origin
+    if not np.isfinite(turn):
+        return difference
+    found: np.ndarray = difference - turn * np.round(difference / turn)
+    return found
+
+
+def unwrapped(values: np.ndarray, turn: float) -> np.ndarray:
+    """Values (n,) without the jumps by whole turns, for interpolation; as they are where the turn is infinite."""
+    return np.unwrap(values, period=turn) if np.isfinite(turn) else values
+
+
+def circular_mean(cosine: float, sine: float, turn: float) -> float:
+    """The direction of the mean of unit vectors, 0 to a turn; NaN where the angles go all round and have none."""
+    if not np.hypot(cosine, sine) > FULL_CIRCLE:
+        return float("nan")
+    return float(np.arctan2(sine, cosine) / (2 * np.pi) % 1 * turn)
 
 
 def _distance(run: Run) -> np.ndarray:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from math import inf, pi
 from typing import TYPE_CHECKING
 
 from sailviz.units import UNITS, spelled
@@ -63,6 +64,8 @@ DIMENSIONS = {
     "saturated": "none",
 }
 
+ON_A_CIRCLE = ("raan", "true_anomaly", "clock")  # equal modulo a turn; longitude is not: it counts revolutions
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -72,6 +75,11 @@ class Quantity:
     stem: str  # e.g. "radius"
     unit: str
     factor: float  # SI per unit
+
+    @property
+    def turn(self) -> float:
+        """A whole turn, in this unit, after which the quantity is the same again; infinite where there is none."""
+        return 2 * pi / self.factor if self.stem in ON_A_CIRCLE else inf
 
     def of(self, run: Run) -> np.ndarray:
         """One value per row, in this unit. (n,)"""

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sailviz.calendar import DateError
 from sailviz.constants import MU_EARTH, MU_SUN, RADIUS_EARTH, RADIUS_SUN
 from sailviz.errors import RecordingError
 from sailviz.run import dates, resample, unit_guard
@@ -68,7 +69,7 @@ class ArrayChecks:
         """float64 and finite, a copy of its own."""
         try:
             found = dates.numbers(values)
-        except dates.DateError as error:
+        except DateError as error:
             return self.refuse(f"{name}: {str(error).removeprefix('is ')}, wanted {wanted}")
         if found.size == 0:
             return self.refuse(f"{name}: has no values, wanted {wanted}")
@@ -83,7 +84,7 @@ class ArrayChecks:
         """(times (n,) s, epoch): numbers, spans of any unit, or dates, which bring an epoch along."""
         try:
             found, epoch = dates.seconds_of(values, epoch)
-        except dates.DateError as error:
+        except DateError as error:
             return self.refuse(f"time: {str(error).removeprefix('is ')}, wanted (n,)"), epoch
         found = self.array("time", found, "(n,)")
         if found is NOTHING or not np.isfinite(found).all():
@@ -98,7 +99,7 @@ class ArrayChecks:
         """Whether a recording's clock reaches that far."""
         try:
             dates.span_in_reach(float(time.min()), float(time.max()), epoch)
-        except dates.DateError as error:
+        except DateError as error:
             self.say(f"time: {error}")
 
     def order(self, time: np.ndarray, position: np.ndarray) -> None:
@@ -155,7 +156,7 @@ class ArrayChecks:
         """UTC to the nanosecond."""
         try:
             return dates.epoch_of(value)
-        except dates.DateError as error:
+        except DateError as error:
             self.say(f"epoch: {error}")
             return None
 

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from sailviz import frames
+from sailviz.calendar import DateError, tai
 from sailviz.errors import RecordingError
 from sailviz.run import dates
 
@@ -54,7 +55,7 @@ class Ephemeris:
         """The epoch in UTC. RecordingError for a time system that has no known distance from UTC, and before 1972."""
         try:
             return dates.utc_of(dates.instant_of(self.epoch, self.time_system))
-        except dates.DateError as error:
+        except DateError as error:
             raise RecordingError(str(error)) from None
 
     def in_ecliptic(self) -> Ephemeris:
@@ -230,8 +231,8 @@ def _read_times(block: _Block, system: str, path: str | Path) -> None:
     instants = []
     for epoch, line in zip(block.epochs, block.lines, strict=True):
         try:
-            instants.append(dates.tai(epoch, system.upper()))
-        except dates.DateError as error:
+            instants.append(tai(epoch, system.upper()))
+        except DateError as error:
             raise RecordingError(f"{path}, line {line}: {error}") from None
     block.instants = np.array(instants, np.int64)
     block.values = np.array(block.states) * 1e3
@@ -256,8 +257,8 @@ def _within_window(block: _Block, system: str, path: str | Path) -> int:
     for end, default in (("START", block.instants[0]), ("STOP", block.instants[-1])):
         text = block.meta.get(f"USEABLE_{end}_TIME", block.meta.get(f"{end}_TIME"))
         try:
-            edges.append(int(default) if text is None else dates.tai(text, system.upper()))
-        except dates.DateError as error:
+            edges.append(int(default) if text is None else tai(text, system.upper()))
+        except DateError as error:
             raise RecordingError(f"{path}, block at line {block.line}: {error}") from None
     inside = (block.instants >= edges[0]) & (block.instants <= edges[1])
     block.keep(inside)

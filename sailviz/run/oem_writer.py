@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from sailviz import files
+from sailviz.calendar import DateError
 from sailviz.errors import RecordingError
 from sailviz.run import dates
 from sailviz.run.oem import Ephemeris, read_oem
@@ -47,7 +48,7 @@ def _epochs(e: Ephemeris, ns: np.ndarray) -> list[str]:
         return [str(label) for label in e.epoch.astype("datetime64[ns]") + ns.astype("timedelta64[ns]")]
     try:
         instants = dates.instant_of(e.epoch) + ns
-    except dates.DateError as error:
+    except DateError as error:
         raise RecordingError(f"an OEM dates its rows in UTC: {error}") from None
     return dates.utc_texts(instants)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from datetime import date, datetime
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -14,6 +13,7 @@ from sailviz.scene.values import (
     IonMass,
     Length,
     MassDensity,
+    Moment,
     Mu,
     NumberDensity,
     Pressure,
@@ -75,7 +75,7 @@ class ReplayedWind(Section):
 
     kind: Literal["replay"]
     file: str
-    start: datetime | date | None = None
+    start: Moment | None = None
     seed: Annotated[int, Field(ge=0)] | None = None
     reference: Annotated[Pressure, POSITIVE] | Literal["mean", "unbiased"] = "mean"
     potential: Literal["fixed", "from speed"] = "fixed"

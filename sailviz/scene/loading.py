@@ -11,7 +11,7 @@ import json
 import os
 import tomllib
 from collections.abc import Mapping
-from datetime import UTC, date, datetime
+from datetime import datetime
 from functools import cache
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -19,6 +19,7 @@ from typing import Annotated, Any, Literal
 from pydantic import Field, PrivateAttr
 from pydantic_core import ValidationError
 
+from sailviz.calendar import naive_utc
 from sailviz.errors import Fault, SceneError
 from sailviz.scene.body import CustomBody, Target
 from sailviz.scene.conflicts import conflicts
@@ -30,7 +31,7 @@ from sailviz.scene.sections import Approximation, Chaos, Ensemble, Expectation, 
 from sailviz.scene.start import Start
 from sailviz.scene.steering import Steering
 from sailviz.scene.units_in_keys import convert
-from sailviz.scene.values import Section
+from sailviz.scene.values import Moment, Section
 from sailviz.shipped import shipped_scenes
 from sailviz.words import nearest
 
@@ -43,7 +44,7 @@ class Scene(Section):
     thesis: str = ""
     look_for: list[str] = []
     family: Literal["displaced", "spirals", "deorbit", "wind", "transfers"] | None = None
-    epoch: datetime | date | None = None
+    epoch: Moment | None = None
     ephemeris: Literal["mean-elements", "de421"] = "mean-elements"
     body: Literal["sun", "earth"] | CustomBody = "sun"
     start: Start
@@ -96,11 +97,7 @@ class Scene(Section):
     @property
     def epoch_utc(self) -> datetime | None:
         """The epoch as a naive UTC datetime."""
-        if self.epoch is None:
-            return None
-        if not isinstance(self.epoch, datetime):
-            return datetime(self.epoch.year, self.epoch.month, self.epoch.day)
-        return self.epoch.astimezone(UTC).replace(tzinfo=None) if self.epoch.tzinfo else self.epoch
+        return None if self.epoch is None else naive_utc(self.epoch)
 
 
 SceneSource = str | os.PathLike[str] | dict[str, Any] | Scene  # what every verb that takes a scene takes

@@ -2,12 +2,28 @@
 
 from __future__ import annotations
 
+from datetime import date, datetime
 from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
+from sailviz.calendar import PATTERN, DateError, moment
 from sailviz.scene.units_in_keys import Dimension
+
+
+def wrong(message: str) -> PydanticCustomError:
+    """An error of a validator that comes to the person as this sentence."""
+    return PydanticCustomError("scene", message)
+
+
+def _moment(value: object) -> date:
+    """A date, quoted or not."""
+    try:
+        return moment(value)
+    except DateError as error:
+        raise wrong(str(error)) from None
+
 
 Length = Annotated[float, Dimension("length")]
 Thickness = Annotated[float, Dimension("thickness")]
@@ -26,6 +42,11 @@ MassDensity = Annotated[float, Dimension("mass_density")]
 SolarFlux = Annotated[float, Dimension("solar_flux")]
 IonMass = Annotated[float, Dimension("ion_mass")]
 Mu = Annotated[float, Dimension("mu")]
+Moment = Annotated[
+    datetime | date,
+    BeforeValidator(_moment),
+    WithJsonSchema({"type": "string", "pattern": PATTERN}),
+]
 Three = Field(min_length=3, max_length=3)
 PositionVector = Annotated[list[float], Dimension("length"), Three]
 VelocityVector = Annotated[list[float], Dimension("speed"), Three]
@@ -41,11 +62,6 @@ class Section(BaseModel):
     """A table of the scene file."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
-
-
-def wrong(message: str) -> PydanticCustomError:
-    """An error of a validator that comes to the person as this sentence."""
-    return PydanticCustomError("scene", message)
 
 
 def one_of(section: Section, *names: str) -> None:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from datetime import datetime
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sailviz.calendar import naive_utc
 from sailviz.constants import SOLAR_IRRADIANCE, WIND_POTENTIAL, WIND_PRESSURE
 from sailviz.environment import irradiance
 from sailviz.environment.solar_wind import laws
@@ -207,10 +207,7 @@ def _replayed(scene: Scene, wind: ReplayedWind, duration: float) -> _Weather:
     potential = _potential(scene)
     series = measured_wind(scene, wind)
     times = series.step * np.arange(int(np.ceil(duration / series.step * (1 - 1e-12))))
-    start = None
-    if wind.start is not None:
-        naive = wind.start.replace(tzinfo=None) if isinstance(wind.start, datetime) else wind.start
-        start = naive.isoformat()
+    start = None if wind.start is None else naive_utc(wind.start).isoformat()
     try:
         met = replay(series, times, start=start, seed=wind.seed)
     except ValueError as error:

@@ -7,6 +7,7 @@ from datetime import UTC, date, datetime, timedelta, timezone
 import numpy as np
 import pytest
 
+from sailviz.calendar import LEAP_SECONDS, DateError, leap_seconds, tai
 from sailviz.run import dates
 
 
@@ -22,22 +23,22 @@ from sailviz.run import dates
     ],
 )
 def test_time_systems_differ_from_utc_by_the_leap_seconds_of_their_date(text, system, utc):
-    assert dates.utc_of(dates.tai(text, system)) == np.datetime64(utc)
+    assert dates.utc_of(tai(text, system)) == np.datetime64(utc)
 
 
 def test_every_leap_second_is_there_as_another_table_has_it():
     erfa = pytest.importorskip("erfa")
     theirs = [(int(y), int(m), float(s)) for y, m, s in erfa.leap_seconds.get() if y >= 1972]
-    assert [(y, m, float(s)) for y, m, s in dates.LEAP_SECONDS] == theirs
+    assert [(y, m, float(s)) for y, m, s in LEAP_SECONDS] == theirs
 
 
 def test_labels_run_through_each_leap_second_once():
-    for year, month, offset in dates.LEAP_SECONDS[1:]:
-        start = dates.tai(f"{year}-{month:02}-01T00:00:00", "UTC")
+    for year, month, offset in LEAP_SECONDS[1:]:
+        start = tai(f"{year}-{month:02}-01T00:00:00", "UTC")
         texts = dates.utc_texts(start + np.array([-2, -1, 0], np.int64) * 10**9)
         assert [text[17:19] for text in texts] == ["59", "60", "00"]
-        assert [dates.tai(text, "UTC") - start for text in texts] == [-2 * 10**9, -(10**9), 0]
-        assert dates.leap_seconds(date(year, month, 1)) == offset
+        assert [tai(text, "UTC") - start for text in texts] == [-2 * 10**9, -(10**9), 0]
+        assert leap_seconds(date(year, month, 1)) == offset
 
 
 @pytest.mark.parametrize(
@@ -83,7 +84,7 @@ def test_dates_of_every_kind_are_one(value, expected):
     ],
 )
 def test_what_is_no_date_is_refused_never_wrapped(value, word):
-    with pytest.raises(dates.DateError, match=word):
+    with pytest.raises(DateError, match=word):
         dates.epoch_of(value)
 
 
@@ -119,7 +120,7 @@ def test_dates_as_times_count_from_the_epoch_or_from_the_first():
     ],
 )
 def test_times_that_are_none_are_refused(values, word):
-    with pytest.raises((dates.DateError, ValueError), match=word):
+    with pytest.raises((DateError, ValueError), match=word):
         dates.seconds_of(values)
 
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from datetime import timedelta
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
+from sailviz.calendar import LONGEST, OUT_OF_REACH, DateError, in_reach
 from sailviz.constants import YEAR
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.craft import has_surface
@@ -16,7 +18,6 @@ from sailviz.words import nearest
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
-LONGEST = 2**63 / 1e9  # s, what 64 bits of nanoseconds reach
 COME_WITH_DEVICES = {"impact", "thrust on", "thrust off", "brake off"}  # events that nobody asks for
 OVER_THE_SURFACE = ("altitude", "mean-altitude")  # kinds of events
 
@@ -35,9 +36,17 @@ def ephemeris(scene: Scene) -> Faults:
 
 def epoch(scene: Scene) -> Faults:
     """A recording's clock reaches over the run's dates."""
-    if scene.epoch is None or 1700 <= scene.epoch.year <= 2262 - scene.propagation.duration / YEAR:
+    begins = scene.epoch_utc
+    if begins is None:
         return []
-    return [("epoch", "the run must lie between the years 1700 and 2262, what 64 bits of nanoseconds reach")]
+    try:
+        ends = begins + timedelta(seconds=scene.propagation.duration)
+        in_reach(ends.date(), f"the end of the run, {ends:%Y-%m-%d},")
+    except OverflowError:
+        return [("epoch", f"the end of the run {OUT_OF_REACH}")]
+    except DateError as error:
+        return [("epoch", str(error))]
+    return []
 
 
 def duration(scene: Scene) -> Faults:

@@ -136,7 +136,7 @@ CONFLICTS = [  # base, what is changed, place, the words that say why
      "device.tether_length_km", "longer than the 500 km"),
     (SUN, {"device": SAIL, **law("orbital", pitch_deg=100)}, "steering.pitch_deg", "beyond 90 deg"),
     (SUN, {"device": SAIL, "propagation": {"duration_yr": 300}}, "propagation.duration_yr", "292 years"),
-    (SUN, {"device": SAIL, "epoch": date(1650, 1, 1)}, "epoch", "between the years 1700 and 2262"),
+    (SUN, {"device": SAIL, "epoch": date(1650, 1, 1)}, "epoch", "outside the years 1678 to 2262"),
 ]  # fmt: skip
 
 

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 from matplotlib.colors import LogNorm
 
 from sailviz.design import asymptotic, special_thrust, spirals
 from sailviz.design.displaced.force_shape import force_shape
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from sailviz.figures.page import Pen
 
 CIRCLE = [0.0, 0.0, 1.0]
 LAWS = {  # title -> exponent, radial over transverse thrust
@@ -26,7 +33,7 @@ def _radius(theta, *rest, **more):
     return np.empty(0)
 
 
-def validity_map(pen, *panels):
+def validity_map(pen: Pen, *panels: Axes) -> None:
     """Largest error in r over thrust and arc, for the three laws."""
     s = pen.style
     turns = np.geomspace(0.25, 40, 161)
@@ -68,7 +75,7 @@ def validity_map(pen, *panels):
     pen.bar(panels[-1], image, "largest relative error in r")
 
 
-def rectification(pen, *panels):
+def rectification(pen: Pen, *panels: Axes) -> None:
     """Error at the end of five revolutions over the length of the legs, plain and midpoint."""
     s = pen.style
     legs = np.unique(np.concatenate([5 * 2 * np.pi / np.arange(1, 6), 2 * np.pi / np.arange(1, 65)]))
@@ -104,7 +111,7 @@ def rectification(pen, *panels):
     panels[1].legend(loc="lower left")
 
 
-def spiral_maps(pen, left, right):
+def spiral_maps(pen: Pen, left: Axes, right: Axes) -> None:
     """Flight-path angle over pitch and lightness; lightness for insertion over anomaly and eccentricity."""
     s = pen.style
     films = [
@@ -113,7 +120,7 @@ def spiral_maps(pen, left, right):
     ]
     pitch, beta = np.meshgrid(np.linspace(0.05, 89.95, 451), np.linspace(0.001, 1.2, 451))
     gamma = np.degrees(spirals.logarithmic(beta, np.radians(pitch)).flight_path_angle)
-    smooth = {"cmap": pen.ramp, "shading": "gouraud", "rasterized": True, "vmin": 0}
+    smooth: dict[str, Any] = {"cmap": pen.ramp, "shading": "gouraud", "rasterized": True, "vmin": 0}
     image = left.pcolormesh(pitch, beta, np.ma.masked_invalid(gamma), vmax=55, **smooth)
     lines = left.contour(pitch, beta, gamma, [1, 2, 5, 10, 20, 30, 40], colors=[s.ink], linewidths=0.8, alpha=0.7)
     pen.contour_labels(left, lines, lambda v: f"{v:g}°")
@@ -156,7 +163,7 @@ def spiral_maps(pen, left, right):
     right.legend(loc="upper right", facecolor=s.panel, frameon=True, edgecolor="none", framealpha=0.85)
 
 
-def escape(pen, left, right):
+def escape(pen: Pen, left: Axes, right: Axes) -> None:
     """Escape radius and time over the acceleration."""
     s = pen.style
     slow = np.geomspace(1e-4, 0.3, 200)
@@ -173,10 +180,10 @@ def escape(pen, left, right):
         right.plot(slow, slow * found.better_escape_time, color=color, linestyle=(0, (1, 2)), linewidth=1.6)
         right.plot(dots, dots * exact.time, "o", color=color, markersize=4, label=name)
     fast, dots = np.geomspace(0.1251, 2, 200), np.geomspace(0.126, 2, 12)
-    found, exact = special_thrust.radial(fast), special_thrust.radial(dots).exact
-    left.plot(fast, found.escape_radius, color=s.series[2])
+    radial, exact = special_thrust.radial(fast), special_thrust.radial(dots).exact
+    left.plot(fast, radial.escape_radius, color=s.series[2])
     left.plot(dots, exact.radius, "o", color=s.series[2], markersize=4)
-    right.plot(fast, fast * found.escape_time, color=s.series[2])
+    right.plot(fast, fast * radial.escape_time, color=s.series[2])
     right.plot(dots, dots * exact.time, "o", color=s.series[2], markersize=4, label="radial")
     for axes in (left, right):
         axes.axvline(0.125, color=s.quiet, linewidth=0.8)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 from matplotlib.colors import LogNorm
 from matplotlib.patheffects import withStroke
@@ -13,6 +15,11 @@ from sailviz.design.decay import disposal
 from sailviz.environment import atmosphere
 from sailviz.propulsion import plasma_brake
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from sailviz.figures.page import Pen
+
 NAMES = {"min2019": "solar minimum, 2019", "mid2014": "middle, 2014", "max2001": "maximum, 2001"}
 DASHED, DOTTED = (0, (4, 2.5)), (0, (1, 2))
 
@@ -21,7 +28,7 @@ def _color(style, level):
     return dict(zip(decay.LEVELS, (style.series[0], style.series[2], style.series[1]), strict=True))[level]
 
 
-def drag_profile(pen, left, right):
+def drag_profile(pen: Pen, left: Axes, right: Axes) -> None:
     """Force per length over altitude at three solar levels with the density's band, and the error of fitted shapes."""
     s = pen.style
     h = np.linspace(200e3, 1500e3, 521)
@@ -66,7 +73,7 @@ def _name(axes, altitude, mass, words, color, below=False):
     axes.text(altitude / 1e3, mass / 1.13 if below else 1.13 * mass, words, color=color, fontsize=9, **place)
 
 
-def deorbit(pen, left, right):
+def deorbit(pen: Pen, left: Axes, right: Axes) -> None:
     """What 260 kg must carry to come down, and how long it takes, over the altitude."""
     s = pen.style
     h = np.linspace(400e3, 1200e3, 161)
@@ -79,10 +86,10 @@ def deorbit(pen, left, right):
         left.plot(km, disposal.electric(MASS, h, isp, 0.01).propellant, color=thrust)
         _name(left, 1080e3, disposal.electric(MASS, 1080e3, isp, 0.01).propellant, name, thrust)
     left.axhspan(*SYSTEM, color=s.series[0], alpha=0.28, linewidth=0)
-    tether = plasma_brake.tether_mass(LENGTH)
+    tether = float(plasma_brake.tether_mass(LENGTH))
     left.axhline(tether, color=s.series[0])
-    words = {"color": s.series[0], "fontsize": 9, "ha": "right", "va": "center"}
-    left.text(1185, np.sqrt(SYSTEM[0] * SYSTEM[1]), "plasma brake: reel, tip mass, high-voltage supply", **words)
+    words: dict[str, Any] = {"color": s.series[0], "fontsize": 9, "ha": "right", "va": "center"}
+    left.text(1185, float(np.sqrt(SYSTEM[0] * SYSTEM[1])), "plasma brake: reel, tip mass, high-voltage supply", **words)
     left.text(1185, 1.25 * tether, f"its tether alone: {LENGTH / 1e3:g} km, {1e3 * tether:.0f} g", **words)
     left.set(yscale="log", xlabel="altitude of the circular orbit [km]", ylabel="mass [kg]")
     left.set(xlim=(400, 1200), ylim=(0.03, 200))
@@ -117,7 +124,7 @@ AIR = {"min2019": (70.0, 5.0), "mid2014": (145.0, 10.0), "max2001": (200.0, 15.0
 CRAFT = {"mass": 100.0, "drag_area": 2.2}  # kg, m2 with the drag coefficient
 
 
-def lifetime(pen, *panels):
+def lifetime(pen: Pen, *panels: Axes) -> None:
     """Time from a circular orbit to re-entry over tether length and altitude, at three solar levels."""
     length = np.geomspace(50, 10e3, 61)
     h = np.linspace(400e3, 1200e3, 161)

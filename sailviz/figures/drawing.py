@@ -6,8 +6,12 @@ Needs matplotlib, which comes with the extra `plot`: pip install "sailviz[plot]"
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from sailviz.figures.catalogue import CATALOGUE, Entry
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 FORMATS = ("png", "svg", "pdf")
 
@@ -26,7 +30,7 @@ def title(name: str) -> str:
     return _entry(name).title
 
 
-def figure(name: str, style: str = "dark", **options):
+def figure(name: str, style: str = "dark", **options: object) -> Figure:
     """A figure as a matplotlib Figure. style : "dark" or "light". options : what the figure takes; series="FILE", a
     measured solar wind, for wind-fit."""
     entry = _entry(name)
@@ -50,7 +54,7 @@ def figure(name: str, style: str = "dark", **options):
         raise FigureError(str(error)) from None
 
 
-def draw(name: str, path, style: str = "dark", dpi: int = 160, **options) -> Path:
+def draw(name: str, path: str | Path, style: str = "dark", dpi: int = 160, **options: object) -> Path:
     """Draw a figure into a file, PNG, SVG or PDF by its ending. options as of `figure`. Returns the path."""
     path = Path(path)
     kind = path.suffix.lower().lstrip(".")
@@ -66,7 +70,7 @@ def draw(name: str, path, style: str = "dark", dpi: int = 160, **options) -> Pat
     return path
 
 
-def _entry(name) -> Entry:
+def _entry(name: str) -> Entry:
     try:
         return CATALOGUE[name]
     except KeyError:

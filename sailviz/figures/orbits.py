@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from sailviz.constants import AU, GRAVITY_AT_1_AU
 from sailviz.design import displaced
 from sailviz.propulsion.electric_sail import CONE_MAX
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from sailviz.figures.page import Pen
+
 PHI_MAX = np.degrees(CONE_MAX)
 DASHES = (0, (4, 2.5))
 
 
-def requirements(pen, far, near):
+def requirements(pen: Pen, far: Axes, near: Axes) -> None:
     """Fig. 4.2 for the angular rate of the Earth: cone angle and a_c over elevation and distance."""
     s = pen.style
     # levels, and the places nearest to which their numbers stand
@@ -62,7 +69,7 @@ def _type_ii(radius, psi):
     return displaced.type_ii(radius * AU, psi).characteristic_acceleration * 1e3
 
 
-def type_ii(pen, axes):
+def type_ii(pen: Pen, axes: Axes) -> None:
     """Fig. 4.3: a_c over elevation for distances from 0.5 to 2 au."""
     s = pen.style
     psi = np.radians(90) - CONE_MAX * np.linspace(1, 0, 400) ** 2  # dense at the limit, where a square root ends
@@ -99,7 +106,7 @@ def _limit(pen, axes):
     )
 
 
-def type_ii_models(pen, axes):
+def type_ii_models(pen: Pen, axes: Axes) -> None:
     """Fig. 4.4: the recent model against the original one, whose thrust falls as r^-7/6 whatever the attitude."""
     s = pen.style
     psi = np.radians(90) - CONE_MAX * np.linspace(1, 0, 400) ** 2
@@ -133,7 +140,7 @@ def type_ii_models(pen, axes):
     axes.set_xticks(np.arange(70, 91, 2))
 
 
-def stability_map(pen, *panels):
+def stability_map(pen: Pen, *panels: Axes) -> None:
     """Growth of a disturbance over elevation and rate, for both ways of holding the clock angle."""
     s = pen.style
     psi, ratio = np.linspace(0, 40, 401), np.linspace(0.3, 1, 401)

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import matplotlib
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colorbar import Colorbar
 from matplotlib.colors import LinearSegmentedColormap
+from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.text import Text
+
+from sailviz.figures.catalogue import Entry
 
 
 @dataclass(frozen=True)
@@ -64,17 +73,19 @@ class Pen:
         self.style = style
         self.ramp = LinearSegmentedColormap.from_list("ramp", style.ramp).with_extremes(bad=style.forbidden)
 
-    def label(self, axes, x, y, text, color=None, **more):
+    def label(self, axes: Axes, x: float, y: float, text: str, color: str | None = None, **more: Any) -> Text:
         """Words inside a panel, on a patch of the panel's colour so that no line runs through them."""
-        options = {"ha": "center", "va": "center", "fontsize": 9.5} | more
+        options: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 9.5} | more
         pad = {"facecolor": self.style.panel, "edgecolor": "none", "alpha": 0.85, "pad": 1.6}
         return axes.text(x, y, text, color=color or self.style.ink, bbox=pad, zorder=6, **options)
 
-    def contour_labels(self, axes, lines, form, spots=()):
+    def contour_labels(
+        self, axes: Axes, lines: ContourSet, form: Callable[[float], str], spots: Iterable[tuple[float, float]] = ()
+    ) -> None:
         """Numbers on contour lines, nearest to the spots (x, y) if there are any."""
         axes.clabel(lines, fmt=form, fontsize=8.5, inline=True, inline_spacing=4, manual=list(spots) or False)
 
-    def bar(self, axes, mappable, words, **more):
+    def bar(self, axes: Axes, mappable: ScalarMappable, words: str, **more: Any) -> Colorbar:
         """A slim colour bar."""
         bar = axes.figure.colorbar(mappable, ax=axes, pad=0.02, fraction=0.045, aspect=32, **more)
         bar.outline.set_visible(False)
@@ -83,7 +94,7 @@ class Pen:
         return bar
 
 
-def compose(entry, style_name: str, options) -> Figure:
+def compose(entry: Entry, style_name: str, options: Mapping[str, object]) -> Figure:
     """The page: panels, title above, origin below. options : keywords for the drawing function."""
     style = STYLES[style_name]
     rc: dict[Any, object] = {
@@ -137,7 +148,7 @@ def compose(entry, style_name: str, options) -> Figure:
     return figure
 
 
-def save(figure, path, dpi):
+def save(figure: Figure, path: Path, dpi: int) -> None:
     """Write a figure so that drawing it again gives the same file: no dates, no random names, words that stay words."""
     dates = {".png": {"Software": None}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
     with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "sailviz"}):

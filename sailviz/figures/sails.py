@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from sailviz.propulsion import electric_sail
 from sailviz.propulsion.solar_sail import FILMS
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
-def cone_and_acceleration(pen, left, right):
+    from sailviz.figures.page import Pen
+
+
+def cone_and_acceleration(pen: Pen, left: Axes, right: Axes) -> None:
     """Fig. 3.4: phi(alpha) and gamma(alpha) of the electric sail."""
     s = pen.style
     alpha = np.radians(np.linspace(-90, 90, 721))
@@ -19,7 +26,7 @@ def cone_and_acceleration(pen, left, right):
     inside = np.abs(degrees) <= 70
     normal = np.column_stack([np.cos(alpha), np.sin(alpha), np.zeros_like(alpha)])[inside]
     push = electric_sail.acceleration([electric_sail.AU, 0.0, 0.0], normal, 1.0, "polynomial")
-    fit = {"color": s.quiet, "linestyle": (0, (1, 2)), "linewidth": 1.6, "zorder": 3}
+    fit: dict[str, Any] = {"color": s.quiet, "linestyle": (0, (1, 2)), "linewidth": 1.6, "zorder": 3}
 
     left.plot(degrees, np.degrees(electric_sail.cone_angle(alpha)), color=s.series[0], zorder=4)
     left.plot(degrees[inside], np.degrees(np.arctan2(push[:, 1], push[:, 0])), **fit)
@@ -38,7 +45,7 @@ def cone_and_acceleration(pen, left, right):
         axes.set_xticks(np.arange(-90, 91, 30))
 
 
-def thrust_loci(pen, axes):
+def thrust_loci(pen: Pen, axes: Axes) -> None:
     """Fig. 3.5: circumferential against radial thrust, pitch as the parameter."""
     s = pen.style
     alpha = np.radians(np.linspace(0, 90, 361))

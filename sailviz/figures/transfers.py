@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from matplotlib.dates import DateFormatter, MonthLocator
 
@@ -9,6 +11,11 @@ from sailviz.figures import transfer_data
 from sailviz.figures.transfer_data import COMPARED, OVER_ACCELERATION, TARGETS
 from sailviz.propulsion.solar_sail import FILMS
 from sailviz.steering.optimal import analytic_pitch, optimal_pitch
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from sailviz.figures.page import Pen
 
 WORDS = {
     "ideal": "ideal film",
@@ -22,7 +29,7 @@ WORDS = {
 DASHED, DOTTED = (0, (4, 2.5)), (0, (1, 2))
 
 
-def flight_time(pen, *panels):
+def flight_time(pen: Pen, *panels: Axes) -> None:
     """Flight time over the characteristic acceleration, one panel per target."""
     found = transfer_data.flight_times()
     for panel, target in zip(panels, TARGETS, strict=True):
@@ -41,17 +48,17 @@ def flight_time(pen, *panels):
     panels[0].legend(loc="upper right")
 
 
-def steering_laws(pen, pitches, errors, losses):
+def steering_laws(pen: Pen, pitches: Axes, errors: Axes, losses: Axes) -> None:
     """Optimal pitch over the primer angle; error and loss of flying simpler laws with a real film."""
     s = pen.style
     degrees = np.linspace(0, 180, 1801)
     angle = np.radians(degrees)
     for device, color in zip(("ideal", "jpl-2015", "electric-sail"), s.series, strict=False):
-        law = optimal_pitch(angle, device)
-        pitches.plot(degrees, np.where(law.on, np.degrees(law.pitch), np.nan), color=color, label=WORDS[device])
-        off = degrees[~law.on]
+        best = optimal_pitch(angle, device)
+        pitches.plot(degrees, np.where(best.on, np.degrees(best.pitch), np.nan), color=color, label=WORDS[device])
+        off = degrees[~best.on]
         if len(off) and device == "jpl-2015":
-            edge = np.degrees(law.pitch[law.on][-1])
+            edge = np.degrees(best.pitch[best.on][-1])
             pitches.plot([off[0], off[0], 180], [edge, 90, 90], color=color, linestyle=DOTTED, linewidth=1.4)
     pitches.set(xlabel="angle of the primer from the Sun line [°]", ylabel="pitch [°]", xlim=(0, 180), ylim=(0, 95))
     pitches.set_xticks([0, 45, 90, 135, 180])
@@ -63,11 +70,11 @@ def steering_laws(pen, pitches, errors, losses):
         analytic = analytic_pitch(angle, name)
         ideal = optimal_pitch(angle, "ideal").pitch
         on = best.on & analytic.on
-        for pitch, line, law in ((ideal, DASHED, "ideal law"), (np.asarray(analytic), "-", "analytic law")):
+        for pitch, line, word in ((ideal, DASHED, "ideal law"), (np.asarray(analytic), "-", "analytic law")):
             away = np.degrees(np.abs(pitch - best.pitch))
             errors.plot(degrees, np.where(on, np.maximum(away, 1e-5), np.nan), color=color, linestyle=line)
             loss = 1 - _along(FILMS[name], pitch, angle) / np.where(on, best.support, np.nan)
-            losses.plot(degrees, np.maximum(loss, 1e-9), color=color, linestyle=line, label=f"{name.upper()}, {law}")
+            losses.plot(degrees, np.maximum(loss, 1e-9), color=color, linestyle=line, label=f"{name.upper()}, {word}")
     ends = {"xlabel": "angle of the primer from the Sun line [°]", "xlim": (0, 150), "yscale": "log"}
     errors.set(ylabel="error of the pitch [°]", ylim=(1e-4, 20), **ends)
     errors.set_title("how far simpler laws are off")
@@ -85,7 +92,7 @@ def _along(film, pitch, angle):
     return along / film.total
 
 
-def films(pen, *panels):
+def films(pen: Pen, *panels: Axes) -> None:
     """Flight times at 1 mm/s2 with every film and E-sail model, one panel per target."""
     found = transfer_data.flight_times()
     for panel, target in zip(panels, TARGETS[:3], strict=True):
@@ -105,7 +112,7 @@ def films(pen, *panels):
         panel.set_title(f"to {target.capitalize()}")
 
 
-def launch_window(pen, *panels):
+def launch_window(pen: Pen, *panels: Axes) -> None:
     """Flight time over the date of departure, one panel per planet."""
     for panel, (target, (dates, days)), color in zip(
         panels, transfer_data.launch_windows().items(), pen.style.series, strict=False

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
 
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN, YEAR
@@ -17,6 +19,13 @@ from sailviz.uncertainty import chaos, wind
 from sailviz.uncertainty.covariance import linear
 from sailviz.uncertainty.ensembles import RandomWind, fly_ensemble, fly_factors
 
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.axes import Axes
+
+    from sailviz.figures.page import Pen
+
 NPA, HOUR = 1e-9, 3600.0
 LAW = wind.named("lognormal", sigma=0.6144, scale=np.exp(0.4984) * NPA)  # fitted to OMNI2, 1998-2018
 SAMPLE_YEARS, SEED = 5, 2018
@@ -30,26 +39,25 @@ CASES = {  # a_c mm/s2, pitch deg, years
 }
 
 
-def wind_fit(pen, density, rarity, memory, series=None):
+def wind_fit(pen: Pen, density: Axes, rarity: Axes, memory: Axes, series: str | Path | None = None) -> None:
     """Histogram with laws, how rare high pressures are, autocorrelation. series : file of a measured series, or None
     for a sample of the lognormal law."""
     s = pen.style
     if series is not None:
         data = wind.read_series(series)
-        of_fit, pressure, step, measured = data, data.pressure, data.step, data.measured
+        fits, pressure, step, measured = wind.fit(data), data.pressure, data.step, data.measured
         words = f"{series}: {measured.sum()} values of {step / HOUR:g} h; {data.repairs}"
         density.figure.supxlabel(words, fontsize=8.5, color=s.quiet)
     else:
         step = HOUR
         times = np.arange(0, SAMPLE_YEARS * YEAR, step)
-        of_fit = pressure = wind.generate(LAW, times, SEED, "correlated")
-        measured = np.ones(len(pressure), dtype=bool)
-    fits = wind.fit(of_fit)
+        pressure = wind.generate(LAW, times, SEED, "correlated")
+        fits, measured = wind.fit(pressure), np.ones(len(pressure), dtype=bool)
     known = np.sort(pressure[measured]) / NPA
 
     top = min(float(np.percentile(known, 99.5)), 15.0)
     p = np.linspace(top / 400, top, 400)
-    density.hist(known, np.linspace(0, top, 61), density=True, color=s.quiet, alpha=0.35, rwidth=0.92)
+    density.hist(known, np.linspace(0, top, 61).tolist(), density=True, color=s.quiet, alpha=0.35, rwidth=0.92)
     far = np.geomspace(known[len(known) // 10], 1.3 * known[-1], 300)
     rarity.step(known, 1 - np.arange(len(known)) / len(known), where="pre", color=s.quiet, linewidth=3.2, alpha=0.6)
     for (name, word), color in zip(SHOWN.items(), s.series, strict=False):
@@ -59,7 +67,7 @@ def wind_fit(pen, density, rarity, memory, series=None):
         rarity.plot(far, 1 - fit.law.distribution(far * NPA), color=color)
     ends = {"xlabel": "dynamic pressure at 1 au [nPa]"}
     density.set(ylabel="probability density [1/nPa]", xlim=(0, top), **ends)
-    mean, unbiased = (known.mean(), np.mean(np.sqrt(known)) ** 2)
+    mean, unbiased = float(known.mean()), float(np.mean(np.sqrt(known)) ** 2)
     density.axvline(mean, color=s.ink, linewidth=0.9)
     density.axvline(unbiased, color=s.ink, linewidth=0.9, linestyle=(0, (4, 2.5)))
     density.plot([], [], color=s.ink, linewidth=0.9, label=f"mean, {mean:.3f} nPa")
@@ -104,7 +112,7 @@ def _distance(case, pressure, times):
     return np.linalg.norm(out[:, :3], axis=1) / AU
 
 
-def gpc_convergence(pen, left, right):
+def gpc_convergence(pen: Pen, left: Axes, right: Axes) -> None:
     """Error of the standard deviation over the number of flights, two bases; a tube from six flights."""
     s = pen.style
     orders = (1, 2, 3, 4, 5, 6, 8, 10, 12)
@@ -117,7 +125,13 @@ def gpc_convergence(pen, left, right):
         best = chaos.expand(distance, SHAPE, SCALE, 30).standard_deviation
         for basis, line in (("root", "-"), ("laguerre", (0, (4, 2.5)))):
             found = chaos.convergence(distance, SHAPE, SCALE, orders, basis)
-            options = {"color": color, "linestyle": line, "linewidth": 1.6, "marker": "o", "markersize": 3.5}
+            options: dict[str, Any] = {
+                "color": color,
+                "linestyle": line,
+                "linewidth": 1.6,
+                "marker": "o",
+                "markersize": 3.5,
+            }
             left.plot(found.orders + 1, np.maximum(found.error(best), 1e-13), **options)
         left.plot([], [], color=color, label=word)
     left.axhline(1 / np.sqrt(2 * 1e5), color=s.ink, linewidth=0.9)
@@ -132,15 +146,15 @@ def gpc_convergence(pen, left, right):
     case = CASES["1 mm/s², 45°, 1 yr"]
     times = np.linspace(0, case[2] * YEAR, 200)
     days = times / 86400
-    found = chaos.expand(lambda p: _distance(case, p, times), SHAPE, SCALE, 5)
-    for path in found.values:
+    series = chaos.expand(lambda p: _distance(case, p, times), SHAPE, SCALE, 5)
+    for path in series.values:
         right.plot(days, path, color=s.quiet, linewidth=0.9)
-    low, middle, high = found.percentile([5, 50, 95])
+    low, middle, high = series.percentile([5, 50, 95])
     right.fill_between(days, low, high, color=s.series[0], alpha=0.18, linewidth=0, label="5 to 95 %")
-    deviation = found.standard_deviation
-    for edge in (found.mean - deviation, found.mean + deviation):
+    deviation = series.standard_deviation
+    for edge in (series.mean - deviation, series.mean + deviation):
         right.plot(days, edge, color=s.series[1], linestyle=(0, (4, 2.5)), linewidth=1.4)
-    right.plot(days, found.mean, color=s.series[1], label="mean, ± standard deviation")
+    right.plot(days, series.mean, color=s.series[1], label="mean, ± standard deviation")
     right.plot(days, middle, color=s.series[0], label="median")
     nominal = _distance(case, [SHAPE * SCALE], times)[0]
     right.plot(days, nominal, color=s.ink, linestyle=(0, (1, 2)), linewidth=1.4, label="at the mean pressure")
@@ -153,14 +167,14 @@ def gpc_convergence(pen, left, right):
 MARS = 1.523679, (0.6835, 0.2181, 0.6966), 8.98  # au; costates and time from which the shooting begins
 HOURLY = Gamma(2.593, 0.7793e-9)  # of OMNI2, 1998-2018
 FLIGHTS = 1000
-CONTROLS = {
+CONTROLS: dict[str, dict[str, Any]] = {
     "constant voltage": {},
     "pressure law, 40 kV": {"kind": "pressure"},
     "distance law, 40 kV": {"kind": "distance", "position_gain": 100.0, "speed_gain": 50.0},
 }
 
 
-def arrival_dispersion(pen, scatter, bars):
+def arrival_dispersion(pen: Pen, scatter: Axes, bars: Axes) -> None:
     """Where flights to Mars end with and without voltage control; Monte Carlo against linear covariance."""
     s, tu = pen.style, np.sqrt(AU**3 / MU_SUN)
     transfer = smoothed_transfer(MARS[0], 1e-3 / GRAVITY_AT_1_AU, MARS[1], MARS[2], HOUR / tu)
@@ -170,8 +184,8 @@ def arrival_dispersion(pen, scatter, bars):
     start = (AU, 0.0, 0.0), (0.0, np.sqrt(MU_SUN / AU), 0.0), duration
     turn = np.linspace(0, 2 * np.pi, 181)
     spreads = []
-    for (word, law), color in zip(CONTROLS.items(), (s.series[1], s.series[2], s.series[3]), strict=True):
-        row = voltage_control.row(reference_pressure=HOURLY.mean, **law)
+    for (word, control), color in zip(CONTROLS.items(), (s.series[1], s.series[2], s.series[3]), strict=True):
+        row = voltage_control.row(reference_pressure=HOURLY.mean, **control)
         gusts = RandomWind(HOURLY, "redrawn", DAY)
         found = fly_ensemble(
             *start, wind=gusts, control=row, flights=FLIGHTS, seed=2018, table=table, outputs=2, keep=0
@@ -191,18 +205,18 @@ def arrival_dispersion(pen, scatter, bars):
     scatter.set_title(f"{FLIGHTS} flights each, with 1, 2 and 3 σ")
 
     intervals = int(np.ceil(duration / DAY))
-    law = HOURLY.reference_pressure(True) / HOURLY.mean  # (E sqrt p)^2 / E p
-    mean, deviation = np.sqrt(law), np.sqrt(1 - law)
+    share = HOURLY.reference_pressure(True) / HOURLY.mean  # (E sqrt p)^2 / E p
+    mean, deviation = np.sqrt(share), np.sqrt(1 - share)
     ends = linear(lambda f: fly_factors(f, DAY, *start, table=table)[:, [1, 0, 3, 4]], intervals, mean, deviation)
     expected = ends.standard_deviation / [np.pi / 180, AU / 1000, 1e3, 1e3]
     drawn = spreads[0].std(axis=0, ddof=1)
     names = ("azimuth\n[deg]", "distance\n[10⁻³ au]", "speed out\n[km/s]", "speed across\n[km/s]")
     place = np.arange(4)
-    share = drawn / expected
+    ratio = drawn / expected
     bars.bar(place - 0.2, np.ones(4), 0.36, color=s.series[0], label="linear covariance")
-    bars.bar(place + 0.2, share, 0.36, color=s.series[1], label=f"{FLIGHTS} flights, ± 2 standard errors")
-    error = 2 * share / np.sqrt(2 * (FLIGHTS - 1))
-    bars.errorbar(place + 0.2, share, error, fmt="none", ecolor=s.ink, elinewidth=1.2, capsize=4)
+    bars.bar(place + 0.2, ratio, 0.36, color=s.series[1], label=f"{FLIGHTS} flights, ± 2 standard errors")
+    error = 2 * ratio / np.sqrt(2 * (FLIGHTS - 1))
+    bars.errorbar(place + 0.2, ratio, error, fmt="none", ecolor=s.ink, elinewidth=1.2, capsize=4)
     for k in range(4):
         pen.label(bars, place[k] - 0.2, 0.5, f"{expected[k]:.3g}")
         pen.label(bars, place[k] + 0.2, 0.5, f"{drawn[k]:.3g}")

@@ -69,6 +69,11 @@ def s_difference(k, c, c0, e):
     return -d * (w + w0) / (2.0 * w * w * w0 * w0)
 
 
+# Places in `time_terms`; J_X_Y is int X dY
+A_M, B_K, B_M, S_K, S_M, A_2, B_3, S_3 = range(8)
+J_AM_A2, J_BK_B3, J_BM_B3, J_SK_S3, J_SM_S3, J_SK_B3, J_BK_S3 = range(8, 15)
+
+
 @called
 def time_terms(exponent, nu, anomaly, e, eta, b):
     """What the closed form of the time needs at one end of an arc, for e > 0.

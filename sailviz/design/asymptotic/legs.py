@@ -5,7 +5,29 @@ from __future__ import annotations
 import numpy as np
 
 from sailviz.compiled import called, compiled, inlined
-from sailviz.design.asymptotic.integrals import a_integral, b_integral, eccentric, frozen, s_difference, time_terms
+from sailviz.design.asymptotic.integrals import (
+    A_2,
+    A_M,
+    B_3,
+    B_K,
+    B_M,
+    J_AM_A2,
+    J_BK_B3,
+    J_BK_S3,
+    J_BM_B3,
+    J_SK_B3,
+    J_SK_S3,
+    J_SM_S3,
+    S_3,
+    S_K,
+    S_M,
+    a_integral,
+    b_integral,
+    eccentric,
+    frozen,
+    s_difference,
+    time_terms,
+)
 
 OK, NO_MOMENTUM, ASYMPTOTE, HYPERBOLIC, NO_MASS, TOO_MANY_LEGS = range(6)
 PLAIN, MIDPOINT = 0, 1
@@ -83,8 +105,8 @@ def _breakdown(n, nu0, nu1, p1, p2, q3, c0, a0, bk0, bm0, e, eta, b, scale, eps_
             low, high = nu - 2.0 * step, nu
             for _ in range(30):
                 x, y = high - 0.618034 * (high - low), low + 0.618034 * (high - low)
-                fx = _at(n, x, p1, p2, q3, c0, a0, bk0, bm0, e, eta, b, scale, eps_r, eps_t)[3]
-                fy = _at(n, y, p1, p2, q3, c0, a0, bk0, bm0, e, eta, b, scale, eps_r, eps_t)[3]
+                _, _, _, fx = _at(n, x, p1, p2, q3, c0, a0, bk0, bm0, e, eta, b, scale, eps_r, eps_t)
+                _, _, _, fy = _at(n, y, p1, p2, q3, c0, a0, bk0, bm0, e, eta, b, scale, eps_r, eps_t)
                 if fx <= 0.0 or fy <= 0.0:
                     return ASYMPTOTE, x if fx <= 0.0 else y
                 if fx < fy:
@@ -139,13 +161,13 @@ def _closed_time(n, nu0, e0, nu, anomaly, e, eta, b, frozen_q3, scale, eps_r, ep
     """The same time to first order, in closed form; for e >= SMALLEST_E and a leg frozen at its start."""
     x = time_terms(n, nu0, e0, e, eta, b)
     y = time_terms(n, nu, anomaly, e, eta, b)
-    d_a2, d_b3, d_s3 = y[5] - x[5], y[6] - x[6], y[7] - x[7]
+    d_a2, d_b3, d_s3 = y[A_2] - x[A_2], y[B_3] - x[B_3], y[S_3] - x[S_3]
     along = (
-        (y[8] - x[8] - x[0] * d_a2)
-        - 2.0 * (y[9] - x[9] + y[10] - x[10] - (x[1] + x[2]) * d_b3)
-        - 2.0 * (y[11] - x[11] + y[12] - x[12] - (x[3] + x[4]) * d_s3)
+        (y[J_AM_A2] - x[J_AM_A2] - x[A_M] * d_a2)
+        - 2.0 * (y[J_BK_B3] - x[J_BK_B3] + y[J_BM_B3] - x[J_BM_B3] - (x[B_K] + x[B_M]) * d_b3)
+        - 2.0 * (y[J_SK_S3] - x[J_SK_S3] + y[J_SM_S3] - x[J_SM_S3] - (x[S_K] + x[S_M]) * d_s3)
     )
-    outward = -2.0 * (y[13] - x[13] - x[3] * d_b3) + 2.0 * (y[14] - x[14] - x[1] * d_s3)
+    outward = -2.0 * (y[J_SK_B3] - x[J_SK_B3] - x[S_K] * d_b3) + 2.0 * (y[J_BK_S3] - x[J_BK_S3] - x[B_K] * d_s3)
     kepler = ((anomaly - e0) - e * (np.sin(anomaly) - np.sin(e0))) / eta**3
     return kepler / frozen_q3**3 + scale / frozen_q3**4 * (eps_t * along + eps_r * outward)
 

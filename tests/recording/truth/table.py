@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 
 from . import arrival, close_up, craft, earth, ensembles, plots, system
 
@@ -261,6 +261,7 @@ NUMBERS = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/appr
 NUMBERS = (*NUMBERS, "/scene", "/__properties")  # what is not drawn: the truth itself
 
 
+@cache
 def claim_of(entity: str) -> Claim | None:
     """The first row of the table that fits an entity."""
     return next((claim for claim in TABLE if claim.words(entity) is not None), None)

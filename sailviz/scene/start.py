@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import acos, cos, degrees
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -18,6 +19,8 @@ from sailviz.scene.values import (
     one_of,
     wrong,
 )
+
+ROUNDING = 1e-12  # of the cosine of an angle that was written in degrees
 
 
 class CartesianStart(Section):
@@ -41,8 +44,17 @@ class ElementsStart(Section):
 
     @model_validator(mode="after")
     def _conic(self) -> Self:
-        if (self.eccentricity < 1) != (self.semi_major_axis > 0) or self.eccentricity == 1:
+        a, e = self.semi_major_axis, self.eccentricity
+        if e == 1:
+            raise wrong('a parabola has no semi-major axis: give position and velocity, kind = "cartesian"')
+        if a == 0 or (e < 1) != (a > 0):
             raise wrong("an ellipse has eccentricity < 1 and semi-major axis > 0, a hyperbola > 1 and < 0")
+        if 1 + e * cos(self.true_anomaly) <= ROUNDING * e:
+            limit = degrees(acos(-1 / e))
+            raise wrong(
+                f"a hyperbola of eccentricity {e:.10g} has no point at this true_anomaly: it must lie between "
+                f"its asymptotes, less than {limit:.8g} deg from periapsis"
+            )
         return self
 
 

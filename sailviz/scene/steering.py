@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import hypot
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -41,8 +42,11 @@ class InertialSteering(Section):
 
     @model_validator(mode="after")
     def _nonzero(self) -> Self:
-        if not any(self.direction):
+        length = hypot(*self.direction)
+        if length == 0:
             raise wrong("direction must not be the zero vector")
+        if not 1e-100 < length < 1e100:
+            raise wrong(f"direction must be a vector of moderate length, for example a unit vector, has {length:.3g}")
         return self
 
 

@@ -68,7 +68,7 @@ def design_of(scene: Scene) -> Design:
 
 def initial_state(scene: Scene, body: Body, design: Design) -> State:
     """Position (3,) m and velocity (3,) m/s; SceneError for a place inside the body."""
-    return departure(scene).state(scene, scene.start, body, design)
+    return _above_ground(scene, body, departure(scene).state(scene, scene.start, body, design))
 
 
 def held_radius(scene: Scene) -> float | None:

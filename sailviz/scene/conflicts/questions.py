@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sailviz.scene.conflicts import craft, low_orbit, moments
+from sailviz.scene.conflicts import craft, departures, low_orbit, moments
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.approximations import approximations
 from sailviz.scene.conflicts.ensembles import ensembles
@@ -25,6 +25,9 @@ QUESTIONS = (
     ensembles,
     moments.expected_of_ensembles,
     craft.surface_of_the_body,
+    departures.outside_the_body,
+    departures.frame_of_steering,
+    departures.propellant,
     craft.varying_drive,
     moments.epoch,
     low_orbit.known_of_the_earth,

@@ -8,6 +8,7 @@ from math import inf, pi
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from sailviz.constants import RADIUS_EARTH
+from sailviz.scene.conflicts import start_points
 from sailviz.scene.conflicts.answers import Faults, never, nothing, unknown
 from sailviz.scene.device import SolarSail
 from sailviz.scene.start import (
@@ -30,6 +31,10 @@ if TYPE_CHECKING:
 S = TypeVar("S", bound=Section)
 
 
+def nowhere(scene: Scene, start: Section) -> None:
+    """Starts of this kind do not say, or have no need to."""
+
+
 @dataclass(frozen=True)
 class StartFits(Generic[S]):
     """Facts of a kind of start. Functions take a section of the kind."""
@@ -39,6 +44,8 @@ class StartFits(Generic[S]):
     keplerian: bool = False  # an orbit of gravity alone
     inclined: Callable[[S], bool] = never
     over_surface: Callable[[S], bool] = never  # counts from the surface of the central body
+    point: Callable[[Scene, S], start_points.Vector | None] = nowhere  # where it begins, m
+    velocity: Callable[[Scene, S], start_points.Vector | None] = nowhere  # m/s, where it may be at rest
     altitudes: Callable[[S], tuple[float, float] | None] = unknown  # lowest and highest over the Earth's equator, m
     of_the_earth: Callable[[S], Faults] = nothing  # what it says that is known round the Earth only
     conflicts: Callable[[Scene, S], Faults] = nothing  # what the kind alone asks of the scene
@@ -75,21 +82,29 @@ def _spiral(scene: Scene, start: SpiralStart) -> Faults:
 
 
 STARTS: dict[type[Section], StartFits[Any]] = {  # the functions of each record take the class that it stands under
-    CartesianStart: StartFits[CartesianStart](),
+    CartesianStart: StartFits[CartesianStart](point=start_points.cartesian, velocity=start_points.cartesian_velocity),
     ElementsStart: StartFits[ElementsStart](
-        keplerian=True, inclined=lambda start: start.inclination != 0, altitudes=_altitudes_of_elements
+        keplerian=True,
+        inclined=lambda start: start.inclination != 0,
+        point=start_points.elements,
+        altitudes=_altitudes_of_elements,
     ),
     CircularStart: StartFits[CircularStart](
         keplerian=True,
         inclined=lambda start: start.inclination != 0,
         over_surface=lambda start: start.altitude is not None,
+        point=start_points.circular,
         altitudes=_altitudes_of_circle,
         of_the_earth=_circle_round_the_earth,
     ),
-    DisplacedStart: StartFits[DisplacedStart](held=True),
-    HeliostationaryStart: StartFits[HeliostationaryStart](held=True),
-    LagrangeStart: StartFits[LagrangeStart](held=True),
-    PlanetFollowingStart: StartFits[PlanetFollowingStart](held=True, track=True),
-    FlatEllipseStart: StartFits[FlatEllipseStart](held=True, track=True),
-    SpiralStart: StartFits[SpiralStart](conflicts=_spiral),
+    DisplacedStart: StartFits[DisplacedStart](
+        held=True, point=start_points.displaced, velocity=start_points.displaced_velocity
+    ),
+    HeliostationaryStart: StartFits[HeliostationaryStart](
+        held=True, point=start_points.heliostationary, velocity=start_points.heliostationary_velocity
+    ),
+    LagrangeStart: StartFits[LagrangeStart](held=True, point=start_points.lagrange),
+    PlanetFollowingStart: StartFits[PlanetFollowingStart](held=True, track=True, point=start_points.planet_following),
+    FlatEllipseStart: StartFits[FlatEllipseStart](held=True, track=True, point=start_points.flat_ellipse),
+    SpiralStart: StartFits[SpiralStart](point=start_points.spiral, conflicts=_spiral),
 }

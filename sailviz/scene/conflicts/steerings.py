@@ -41,6 +41,7 @@ class SteeringFits(Generic[S]):
     tether_only: bool = False
     primer: bool = False  # makes the most of a sail's thrust along a primer
     as_designed: bool = False  # that of the start's design
+    frame: Callable[[S], str] = lambda steering: ""  # in which it counts: "orbital", "meridian", "velocity"
     planar: Callable[[S], bool] = never  # meant for flights in one plane
     pitch: Callable[[S], Sequence[float]] = no_angles  # every angle that it gives, rad
     in_plane: Callable[[S], bool] = never  # holds one pitch in the orbit plane, as the first-order solution wants
@@ -89,12 +90,22 @@ def _spinning_brake(scene: Scene, device: PlasmaBrake) -> Faults:
     return [("environment.ionosphere", words)] if given else []
 
 
-_FRAME = SteeringFits[FrameSteering](pitch=lambda steering: [steering.pitch], in_plane=_held_pitch_in_plane)
+def _orbital(steering: Section) -> str:
+    return "orbital"
+
+
+def _frame_of_goal(steering: LocalSteering) -> str:
+    return "" if steering.goal in ("energy", "semi-major-axis") else "orbital"
+
+
+_FRAME = SteeringFits[FrameSteering](
+    frame=lambda steering: steering.kind, pitch=lambda steering: [steering.pitch], in_plane=_held_pitch_in_plane
+)
 STEERINGS: dict[str, SteeringFits[Any]] = {  # the functions of each record take the class whose word it stands under
     "sun-facing": SteeringFits[PlainSteering](directs=False, in_plane=always),
     "radial": SteeringFits[PlainSteering](in_plane=always),
-    "circumferential": SteeringFits[PlainSteering](sail=False, in_plane=always),
-    "tangential": SteeringFits[PlainSteering](sail=False),
+    "circumferential": SteeringFits[PlainSteering](sail=False, in_plane=always, frame=_orbital),
+    "tangential": SteeringFits[PlainSteering](sail=False, frame=lambda steering: "velocity"),
     "vertical": SteeringFits[PlainSteering](directs=False, sail=False, tether=True),
     "gravity-gradient": SteeringFits[PlainSteering](tether=True, tether_only=True, brake=_tilted_brake),
     "as designed": SteeringFits[PlainSteering](directs=False, as_designed=True, ensemble=_designed_for_many),
@@ -102,12 +113,14 @@ STEERINGS: dict[str, SteeringFits[Any]] = {  # the functions of each record take
     "orbital": _FRAME,
     "meridian": _FRAME,
     "inertial": SteeringFits[InertialSteering](ensemble=_alone),
-    "table": SteeringFits[TableSteering](pitch=lambda steering: steering.pitch, ensemble=_held_rows),
+    "table": SteeringFits[TableSteering](
+        frame=lambda steering: steering.frame, pitch=lambda steering: steering.pitch, ensemble=_held_rows
+    ),
     "optimal": SteeringFits[OptimalSteering](
         primer=True, planar=lambda steering: len(steering.costates) == 3, ensemble=_alone
     ),
     "smoothed-transfer": SteeringFits[SmoothedSteering](transfer=_smoothed),
-    "locally-optimal": SteeringFits[LocalSteering](primer=True, ensemble=_alone),
-    "lyapunov": SteeringFits[LyapunovSteering](primer=True, ensemble=_alone),
+    "locally-optimal": SteeringFits[LocalSteering](primer=True, frame=_frame_of_goal, ensemble=_alone),
+    "lyapunov": SteeringFits[LyapunovSteering](primer=True, frame=_orbital, ensemble=_alone),
 }
 NO_STEERING = SteeringFits[Any](directs=False, tether=True, in_plane=always)  # a sail faces the Sun, a tether hangs

@@ -18,10 +18,10 @@ class Deferred:
     """Stands for one name of a module until it is used."""
 
     def __init__(self, module: str, name: str, library: str):
-        self._source = module, name, library
+        self.source = module, name, library
 
     def _real(self) -> Any:
-        module, name, library = self._source
+        module, name, library = self.source
         load(module, library)
         return getattr(import_module(module), name)
 
@@ -75,5 +75,5 @@ def load(module: str, library: str) -> None:
         for key, value in list(vars(part).items()):
             if isinstance(value, DeferredModule) and value.__name__ == module:
                 setattr(part, key, real)
-            elif type(value) is Deferred and value._source[0] == module:
-                setattr(part, key, getattr(real, value._source[1]))
+            elif type(value) is Deferred and value.source[0] == module:
+                setattr(part, key, getattr(real, value.source[1]))

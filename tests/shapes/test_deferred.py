@@ -3,6 +3,8 @@
 import subprocess
 import sys
 
+import pytest
+
 
 def fresh(script):
     """What a script prints in a new interpreter."""
@@ -48,3 +50,34 @@ def test_what_was_loaded_before_is_not_put_off():
         "print(sys.modules['scipy.spatial'] is before, trimesh.base.cKDTree is before.cKDTree)"
     )
     assert fresh(script) == ["True", "True"]
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "shell('list')",
+        "shell('check', 'displaced/circular')",
+        "shell('show', 'displaced/circular')",
+        "sailviz.simulate(sailviz.load_scene('displaced/heliostationary'))",
+        "sailviz.read, sailviz.compare, sailviz.export",
+    ],
+)
+def test_what_draws_nothing_loads_no_meshes(code):
+    script = f"""
+import contextlib, io, runpy, sys
+import sailviz
+
+def shell(*words):
+    sys.argv = ["sailviz", *words]
+    runpy.run_module("sailviz", run_name="__main__")
+
+with contextlib.redirect_stdout(io.StringIO()) as said, contextlib.suppress(SystemExit):
+    {code}
+assert said.getvalue() or "shell" not in {code!r}
+print(*[name for name in ("trimesh", "sailviz.shapes.primitives") if name in sys.modules] or ["none"])
+"""
+    assert fresh(script) == ["none"]
+
+
+def test_a_picture_of_a_run_needs_meshes():
+    assert fresh("import sys, sailviz.recording.drawing.drawing\nprint('trimesh' in sys.modules)") == ["True"]

@@ -1,4 +1,4 @@
-"""Clouds of flights: the numbers of an ensemble come back from a recording, and the picture says what they are."""
+"""Many flights: the numbers of an ensemble come back from a recording, and the picture says what they are."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ from sailviz.constants import AU, DAY
 from sailviz.errors import SceneError
 from sailviz.recording import digest, export, read, record
 from sailviz.recording.drawing.arrival_plane import RING, SIGMAS, ellipses
-from sailviz.recording.drawing.description import spread
 from sailviz.recording.views.info import info
 from sailviz.simulation.loop import simulate
 from sailviz.uncertainty.covariance import linear
@@ -18,7 +17,7 @@ from sailviz.uncertainty.ensembles import fly_factors
 
 WIND = {"kind": "gamma", "shape": 2.593, "scale_nPa": 0.7793, "redraw_h": 24, "seed": 5}
 SCENE = {
-    "title": "cloud",
+    "title": "ensemble",
     "start": {"kind": "circular", "radius_au": 1},
     "device": {"kind": "electric-sail", "characteristic_acceleration_mm_s2": 1, "control": {"kind": "pressure"}},
     "steering": {"kind": "orbital", "pitch_deg": 40, "clock_deg": 90},
@@ -38,14 +37,14 @@ def run():
 
 @pytest.fixture(scope="module")
 def recorded(run, tmp_path_factory):
-    path = tmp_path_factory.mktemp("clouds") / "cloud.rrd"
+    path = tmp_path_factory.mktemp("ensembles") / "ensemble.rrd"
     record(run, path)
     return path
 
 
 def test_ensemble_of_a_scene_spreads_as_its_linear_covariance(run):
     """The spread that the sensitivities to 60 daily draws add up to; 400 flights know a deviation to 3.5 %."""
-    cloud = run.setting.ensembles[0]
+    ensemble = run.setting.ensembles[0]
     start = run.position[0], run.velocity[0]
     options = {"pitch": np.radians(40), "characteristic_acceleration": 1e-3}
 
@@ -53,60 +52,60 @@ def test_ensemble_of_a_scene_spreads_as_its_linear_covariance(run):
         return fly_factors(factors, DAY, *start, 60 * DAY, **options)[:, [0, 1, 3, 4]]
 
     found = linear(ends, 60, mean=0.953210, deviation=0.302309)
-    assert cloud.end_deviation[[0, 1, 3, 4]] == pytest.approx(found.standard_deviation, rel=0.12)
-    assert np.all(np.abs(cloud.end_mean[[0, 1, 3, 4]] - found.mean) < 3.5 * found.standard_deviation / 20)
-    assert cloud.mean_factor == pytest.approx(0.953210, abs=3.5 * 0.3023 / np.sqrt(60 * 400))
+    assert ensemble.end_deviation[[0, 1, 3, 4]] == pytest.approx(found.standard_deviation, rel=0.12)
+    assert np.all(np.abs(ensemble.end_mean[[0, 1, 3, 4]] - found.mean) < 3.5 * found.standard_deviation / 20)
+    assert ensemble.mean_factor == pytest.approx(0.953210, abs=3.5 * 0.3023 / np.sqrt(60 * 400))
 
 
-def test_controlled_flights_stay_closer_and_clouds_end_where_the_nominal_run_does(run):
+def test_controlled_flights_stay_closer_and_ensembles_end_where_the_nominal_run_does(run):
     calm = simulate(load_scene(SCENE | {"environment": {}, "ensemble": []}))
     free, held = run.setting.ensembles
-    for cloud in (free, held):
-        assert np.abs(cloud.places(cloud.nominal[-1]) - calm.position[-1]).max() / AU < 1e-7
-        assert np.array_equal(cloud.time, run.time[cloud.step])
+    for ensemble in (free, held):
+        assert np.abs(ensemble.places(ensemble.nominal[-1]) - calm.position[-1]).max() / AU < 1e-7
+        assert np.array_equal(ensemble.time, run.time[ensemble.step])
     assert held.end_deviation[0] < 0.4 * free.end_deviation[0]
     assert held.mean_saturated == pytest.approx(0.0498, abs=0.01)
 
 
-def test_truth_of_a_cloud_comes_back_bit_for_bit(run, recorded):
+def test_truth_of_an_ensemble_comes_back_bit_for_bit(run, recorded):
     recording = read(recorded)
-    for cloud, name in zip(run.setting.ensembles, ("no_control", "held"), strict=True):
+    for ensemble, name in zip(run.setting.ensembles, ("no_control", "held"), strict=True):
         table = recording[f"/ensemble/{name}"]
-        assert np.array_equal(table["time_s"], cloud.time)
-        assert np.array_equal(table["radius_m"], cloud.percentiles["radius_m"].T)
+        assert np.array_equal(table["time_s"], ensemble.time)
+        assert np.array_equal(table["radius_m"], ensemble.percentiles["radius_m"].T)
         assert np.array_equal(
-            table["kept_position_m"].reshape(len(cloud.time), -1, 3)[:, 3], cloud.places(cloud.kept[3])
+            table["kept_position_m"].reshape(len(ensemble.time), -1, 3)[:, 3], ensemble.places(ensemble.kept[3])
         )
-        assert np.array_equal(table.timeline("step"), cloud.step)
+        assert np.array_equal(table.timeline("step"), ensemble.step)
         facts = recording[f"/ensemble/{name}/facts"]
-        assert facts["flights"][0] == cloud.flights
-        assert np.array_equal(np.ravel(facts["end_radius_m"])[: cloud.flights], cloud.end[:, 0])
+        assert facts["flights"][0] == ensemble.flights
+        assert np.array_equal(np.ravel(facts["end_radius_m"])[: ensemble.flights], ensemble.end[:, 0])
     assert recording["/ensemble/held"]["kept_position_m"].shape[1] == 21
 
 
 def test_covariance_of_the_recording_is_that_of_the_flights_along_and_across_the_orbit(run, recorded):
-    cloud = run.setting.ensembles[0]
+    ensemble = run.setting.ensembles[0]
     found = read(recorded)["/ensemble/no_control"]["covariance_m2"][-1].reshape(3, 3)
-    way = cloud.end[:, :2] * [1.0, cloud.mean[-1, 0]]
+    way = ensemble.end[:, :2] * [1.0, ensemble.mean[-1, 0]]
     assert found[:2, :2] == pytest.approx(np.cov(way.T, ddof=0), rel=0.02)
     assert found[0, 1] < 0  # farther out is behind
 
 
 def test_ellipses_are_level_lines_of_the_covariance(run):
-    cloud = run.setting.ensembles[0]
-    inverse = np.linalg.inv(cloud.covariance[-1, :2, :2] * np.outer([1 / AU, 1.0], [1 / AU, 1.0]))
-    for sigma, ring in zip(SIGMAS, ellipses(cloud), strict=True):
-        off = (ring[-1, :, :2] - cloud.mean[-1, :2]) / [AU, 1.0]
+    ensemble = run.setting.ensembles[0]
+    inverse = np.linalg.inv(ensemble.covariance[-1, :2, :2] * np.outer([1 / AU, 1.0], [1 / AU, 1.0]))
+    for sigma, ring in zip(SIGMAS, ellipses(ensemble), strict=True):
+        off = (ring[-1, :, :2] - ensemble.mean[-1, :2]) / [AU, 1.0]
         assert np.einsum("ki,ij,kj->k", off, inverse, off) == pytest.approx(np.full(RING, sigma**2), rel=1e-6)
 
 
 def test_histograms_count_every_recorded_flight(run):
-    for cloud in run.setting.ensembles:
-        assert cloud.histogram.sum(axis=1) == pytest.approx(np.ones(len(cloud.time)))
+    for ensemble in run.setting.ensembles:
+        assert ensemble.histogram.sum(axis=1) == pytest.approx(np.ones(len(ensemble.time)))
     assert run.setting.ensembles[0].histogram[0, 0] == 1  # all begin together
 
 
-def test_recordings_with_clouds_compare_export_and_tell(run, recorded, tmp_path):
+def test_recordings_with_ensembles_compare_export_and_tell(run, recorded, tmp_path):
     again = tmp_path / "again.rrd"
     record(simulate(load_scene(SCENE)), again)
     assert digest(again) == digest(recorded)
@@ -154,9 +153,3 @@ def test_what_an_ensemble_cannot_fly_is_refused_with_its_reason(values, sentence
     with pytest.raises(SceneError) as refused:
         load_scene(SCENE, values)
     assert sentence in str(refused.value)
-
-
-def test_numbers_of_the_scoreboard_are_as_exact_as_their_spread():
-    assert spread(-76.4172, 35.57) == "−76 ± 36"
-    assert spread(0.22, 0.2416) == "+0.22 ± 0.24"
-    assert spread(2.3e-5, 0.0404) == "+0.000 ± 0.040"

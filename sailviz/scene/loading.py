@@ -27,7 +27,7 @@ from sailviz.scene.device import Devices
 from sailviz.scene.environment import Environment
 from sailviz.scene.faults import faults_of, locate
 from sailviz.scene.overrides import overridden
-from sailviz.scene.sections import Approximation, Chaos, Ensemble, Expectation, Propagation, Recording, Watched
+from sailviz.scene.sections import Approximation, Chaos, Ensemble, Expectation, Limits, Propagation, Recording, Watched
 from sailviz.scene.start import Start
 from sailviz.scene.steering import Steering
 from sailviz.scene.units_in_keys import convert
@@ -58,6 +58,7 @@ class Scene(Section):
     ensemble: list[Ensemble] = []
     chaos: list[Chaos] = []
     recording: Recording = Recording()
+    limits: Annotated[Limits, Field(exclude=True)] = Limits()  # no part of what is flown, hence none of the identity
     expect: list[Expectation] = []
 
     _text: str = PrivateAttr("")

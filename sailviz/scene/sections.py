@@ -33,7 +33,7 @@ class Propagation(Section):
     """Duration, output grid, integrator and accuracy."""
 
     duration: Annotated[Time, POSITIVE]
-    outputs: Annotated[int, Field(ge=2, le=100_000_000)] | None = None
+    outputs: Annotated[int, Field(ge=2, le=1_000_000_000)] | None = None
     output_interval: Annotated[Time, POSITIVE] | None = None
     dense: list[DenseOutput] = []
     integrator: Literal["auto", "dop853", "gauss-jackson"] = "auto"
@@ -113,6 +113,17 @@ class Chaos(ManyFlights):
 
     order: Annotated[int, Field(ge=1, le=30)] = 5
     basis: Literal["root", "laguerre"] = "root"
+
+
+class Limits(Section):
+    """How much a run may ask for before it is refused; nothing of this changes what is flown. rows : of the recording;
+    draws : of a wind or of sunlight, or updates of a controller; changes : of wind or voltage in all flights of an
+    ensemble together; steps : rows of a steering table that a law makes, or legs of the first-order solution."""
+
+    rows: Annotated[int, Field(ge=1, le=1_000_000_000)] = 10_000_000
+    draws: Annotated[int, Field(ge=1, le=1_000_000_000)] = 10_000_000
+    changes: Annotated[int, Field(ge=1, le=1_000_000_000_000)] = 1_000_000_000
+    steps: Annotated[int, Field(ge=1, le=1_000_000_000)] = 10_000_000
 
 
 class Recording(Section):

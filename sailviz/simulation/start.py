@@ -109,12 +109,11 @@ def _spiral(scene: Scene, start: SpiralStart, body: Body, design: LogarithmicSpi
 
 def _circular(scene: Scene, start: CircularStart, body: Body, design: None) -> State:
     radius, node = _circle(scene, start, body), _node(scene, start)
-    state = orbital.state(radius, 0.0, start.inclination, node, 0.0, start.argument_of_latitude, body.mu)
-    return _above_ground(scene, body, state)
+    return orbital.state(radius, 0.0, start.inclination, node, 0.0, start.argument_of_latitude, body.mu)
 
 
 def _elements(scene: Scene, start: ElementsStart, body: Body, design: None) -> State:
-    state = orbital.state(
+    return orbital.state(
         start.semi_major_axis,
         start.eccentricity,
         start.inclination,
@@ -123,7 +122,6 @@ def _elements(scene: Scene, start: ElementsStart, body: Body, design: None) -> S
         start.true_anomaly,
         body.mu,
     )
-    return _above_ground(scene, body, state)
 
 
 def _above_ground(scene: Scene, body: Body, state: State) -> State:

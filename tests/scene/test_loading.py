@@ -195,7 +195,7 @@ def test_faults_between_sections_name_both():
         ({"device": {"kind": "none", "active_d": [[3, 1]]}}, "device", "each after the one before"),
         ({"device": {"kind": "none", "active_d": [[3]]}}, "device.active_d[0]", "has 1 entries"),
         ({"propagation": {"duration_d": 10**400}}, "propagation.duration_d", "must be a number"),
-        ({"propagation": {"duration_d": 1, "outputs": 10**400}}, "propagation.outputs", "at most 1e+08"),
+        ({"propagation": {"duration_d": 1, "outputs": 10**400}}, "propagation.outputs", "at most 1e+09"),
         ({"propagation": {"duration_d": float("nan")}}, "propagation.duration_d", "finite"),
     ],
 )  # fmt: skip

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.devices import CONTROLS
+from sailviz.scene.conflicts.limits import too_many
 from sailviz.scene.conflicts.records import device_of, steering_of
 from sailviz.scene.conflicts.surroundings import IRRADIANCES, WINDS
 from sailviz.scene.device import Device, ElectricSail, VoltageControl, control_of
@@ -17,7 +18,6 @@ from sailviz.scene.values import Section
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
-MOST_UPDATES = 1e9  # changes of wind or voltage in all flights of an ensemble together: minutes of computing
 M = TypeVar("M", bound=ManyFlights)
 
 
@@ -30,7 +30,8 @@ class EnsembleFits(Generic[M]):
 
 def _drawn(scene: Scene, item: Ensemble, place: str) -> Faults:
     """What keeps an ensemble from drawing winds of its own."""
-    found, around, duration = [], scene.environment, scene.propagation.duration
+    found: Faults = []
+    around = scene.environment
     if device_of(scene).sunlight:
         light = around.irradiance
         shines = IRRADIANCES[type(light)]
@@ -46,19 +47,24 @@ def _drawn(scene: Scene, item: Ensemble, place: str) -> Faults:
             words = "in a steady wind all flights are the same: environment.solar_wind, or its own"
             found.append((f"{place}.name", words))
         found += blows.ensemble(wind, item, place)
+    return found + _changes(scene, item, place, item.flights, step)
+
+
+def _changes(scene: Scene, item: ManyFlights, place: str, flights: int, step: float | None) -> Faults:
+    """Changes of wind or voltage in all flights together. step : s between changes of the wind, None where it is
+    steady."""
+    duration = scene.propagation.duration
     control = control_of(scene.device) if item.control == "device" else item.control
     every = None if control is None or isinstance(control, str) else CONTROLS[type(control)].interval(control)
-    if item.flights * duration / min(step or duration, every or duration) > MOST_UPDATES:
-        words = "more than a thousand million changes of wind or voltage: fewer flights, longer steps"
-        found.append((f"{place}.flights", words))
-    return found
+    asked = flights * duration / min(step or duration, every or duration)
+    return too_many(scene, asked, "changes", "changes of wind or voltage in all flights together", place)
 
 
 def _expanded(scene: Scene, item: Chaos, place: str) -> Faults:
     """What keeps polynomial chaos from the one kind of pressure that it knows."""
     wind = item.solar_wind or scene.environment.solar_wind
     if WINDS[type(wind)].expands(wind):
-        return []
+        return _changes(scene, item, place, item.order + 1, None)
     words = "polynomial chaos knows one gamma-distributed pressure for a whole flight"
     whose = place if item.solar_wind else "environment"
     return [(f"{whose}.solar_wind", f'{words}: kind = "gamma", variation = "constant"')]

@@ -122,7 +122,7 @@ CONFLICTS = [  # base, what is changed, place, the words that say why
      "ensemble[0]", "round the Sun"),
     (SUN, {"device": SAIL, **around(solar_wind=GAMMA)}, "environment.solar_wind", "acts on an electric sail only"),
     (SUN, {"device": ELECTRIC, **around(solar_wind={**GAMMA, "redraw_s": 0.01})},
-     "environment.solar_wind.redraw_s", "ten million draws"),
+     "environment.solar_wind.redraw_s", "86,400,000 draws, more than the 10,000,000 that limits.draws allows"),
     (SUN, {"device": {**SAIL, "control": {"kind": "electrochromic"}}}, "device.control", "nothing to control"),
     (SUN, {"device": BRAKE}, "environment.ionosphere", "needs an ionosphere"),
     (SUN, {"device": SAIL, **law("spinning", plane="along-track")}, "steering.kind", "for a plasma-brake tether"),

@@ -6,9 +6,10 @@ import difflib
 import os
 import shutil
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -20,6 +21,14 @@ from sailviz.recording.comparison.tables import Evidence, evidence
 from sailviz.recording.exports import arrays, write_npz, written_whole
 from sailviz.run import resample
 from sailviz.run.arrays import Run
+
+if TYPE_CHECKING:
+    from sailviz.recording import Recording
+    from sailviz.scene import Scene
+
+# What a comparison reads; a name, or the path of anything else than a recording or an archive, is a scene to be flown
+Flown: TypeAlias = "Run | Recording | str | os.PathLike[str]"
+Tolerance = float | Mapping[str, float] | None
 
 SMOOTH = 0.7  # rad: where rows are closer on the orbit than this, a picture may draw a curve through them
 HEAD = """\
@@ -43,13 +52,13 @@ class Outcome:
 class Regression:
     """A baseline: NAME.npz with the numbers, NAME.toml with the allowed differences."""
 
-    def __init__(self, folder: Path, name: str, *, rows: int = 60, atol=None, rtol=None):
+    def __init__(self, folder: Path, name: str, *, rows: int = 60, atol: Tolerance = None, rtol: Tolerance = None):
         self.baseline = Path(folder) / f"{name}.npz"
         self.tolerances = Path(folder) / f"{name}.toml"
         self.name, self.rows = name, rows
         self._atol, self._rtol = _named(atol), _named(rtol)
 
-    def update(self, source, values=None) -> None:
+    def update(self, source: Flown | Scene, values: Mapping[str, Any] | None = None) -> None:
         """Write the baseline from a scene or run. Tolerances that stand in the file stay."""
         data = evidence(self._run(source, values))
         self.baseline.parent.mkdir(parents=True, exist_ok=True)
@@ -62,13 +71,19 @@ class Regression:
         text += "".join(f'"{name}" = {_number(value)}\n' for name, value in missing)
         self.tolerances.write_text(text)
 
-    def check(self, source, values, leave_in: Callable[[], Path], pictures: bool = True) -> Outcome:
+    def check(
+        self,
+        source: Flown | Scene,
+        values: Mapping[str, Any] | None,
+        leave_in: Callable[[], Path],
+        pictures: bool = True,
+    ) -> Outcome:
         """Compare a scene or run with the baseline; where they differ, leave everything that helps in a folder."""
-        source = self._run(source, values)
-        data = evidence(source)
+        flown = self._run(source, values)
+        data = evidence(flown)
         if not self.baseline.exists():
             folder = leave_in()
-            self._keep_new(folder, data, source)
+            self._keep_new(folder, data, flown)
             hint = f"there is no baseline {self.baseline}; look at {folder}, then run pytest --sailviz-update"
             return Outcome(False, None, hint, folder)
         kept = self._read_tolerances()
@@ -87,13 +102,13 @@ class Regression:
         shutil.copy(self.baseline, folder / "baseline.npz")
         if self.tolerances.exists():
             shutil.copy(self.tolerances, folder / "baseline.toml")
-        self._keep_new(folder, data, source)
+        self._keep_new(folder, data, flown)
         said = _pictures(folder) if pictures else ""
         report = f"{comparison}\n\nA is the baseline, B the new run. {folder} holds both and this table{said}."
         return Outcome(False, comparison, report, folder)
 
     @staticmethod
-    def _run(source, values):
+    def _run(source: Flown | Scene, values: Mapping[str, Any] | None) -> Flown:
         """A scene is run, everything else is taken as it is."""
         if isinstance(source, str | os.PathLike) and Path(source).suffix in (".rrd", ".npz"):
             return source
@@ -113,7 +128,7 @@ class Regression:
             return arrays(data)
         return arrays(data, rows=np.unique(np.round(np.linspace(0, count - 1, self.rows)).astype(int)))
 
-    def _keep_new(self, folder: Path, data: Evidence, source) -> None:
+    def _keep_new(self, folder: Path, data: Evidence, source: Flown) -> None:
         """The new rows, and the whole recording of a run."""
         write_npz(folder / "new.npz", self._thinned(data), compressed=True)
         if isinstance(source, Run):
@@ -121,7 +136,7 @@ class Regression:
 
             record(source, folder / "new.rrd")
 
-    def _read_tolerances(self) -> dict:
+    def _read_tolerances(self) -> dict[str, Any]:
         try:
             return tomllib.loads(self.tolerances.read_text())
         except FileNotFoundError:
@@ -130,13 +145,13 @@ class Regression:
             raise RecordingError(f"{self.tolerances} is not valid TOML: {error}") from None
 
 
-def _named(tolerance) -> dict[str, float]:
+def _named(tolerance: Tolerance) -> dict[str, float]:
     if tolerance is None:
         return {}
-    return dict(tolerance) if isinstance(tolerance, dict) else {"": float(tolerance)}
+    return dict(tolerance) if isinstance(tolerance, Mapping) else {"": float(tolerance)}
 
 
-def _known(atol: dict, data: Evidence) -> dict[str, float]:
+def _known(atol: dict[str, float], data: Evidence) -> dict[str, float]:
     """Tolerances of columns that are gone say nothing: the comparison will tell that they are gone."""
     names = set(_defaults(data))
     for name in atol:
@@ -200,7 +215,7 @@ def _run_of(path: Path, side: str) -> Run:
     if rows > 3 and np.max(turn[1:] * np.diff(time)) < SMOOTH:  # or a few rows would be taken for an orbit's ellipses
         time = np.interp(np.arange(16 * rows - 15) / 16, np.arange(rows), time)
 
-    def column(entity, name):
+    def column(entity: str, name: str) -> np.ndarray:
         return resample.at(time, name, state["time_s"], tables[entity][name], state)
 
     return trajectory(

@@ -10,13 +10,22 @@ this module is loaded whenever pytest starts.
 
 from __future__ import annotations
 
+import os
 import re
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
+if TYPE_CHECKING:
+    from sailviz.recording import Comparison, Recording
+    from sailviz.run import Run
+    from sailviz.scene import Scene
 
-def pytest_addoption(parser):
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """What pytest and its configuration file may say to the fixture."""
     group = parser.getgroup("sailviz", "runs held to their baselines")
     group.addoption("--sailviz-update", action="store_true", help="Write the baselines of recording_regression anew.")
     group.addoption("--sailviz-failures", metavar="DIR", help="Where recording_regression leaves what failed.")
@@ -25,7 +34,9 @@ def pytest_addoption(parser):
 
 
 @pytest.fixture
-def recording_regression(request, tmp_path_factory):
+def recording_regression(
+    request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory
+) -> Callable[..., Comparison | None]:
     """recording_regression(scene or run) compares it with its baseline and fails where they differ.
 
     source : the name of a shipped scene, the path of a scene file or recording, a Scene, a Run, or a Recording
@@ -34,9 +45,18 @@ def recording_regression(request, tmp_path_factory):
     set : values over those of the scene, e.g. {"propagation.tolerance": 1e-13}
     Returns the Comparison.
     """
-    used = set()
+    used: set[str] = set()
 
-    def check(source, *, name="", folder=None, rows=60, atol=None, rtol=None, set=None):
+    def check(
+        source: Run | Recording | Scene | str | os.PathLike[str],
+        *,
+        name: str = "",
+        folder: str | Path | None = None,
+        rows: int = 60,
+        atol: float | Mapping[str, float] | None = None,
+        rtol: float | Mapping[str, float] | None = None,
+        set: Mapping[str, Any] | None = None,
+    ) -> Comparison | None:
         __tracebackhide__ = True
         name = re.sub(r"[^\w.+-]+", "_", name or request.node.name).strip("_")
         if name in used:
@@ -50,7 +70,7 @@ def recording_regression(request, tmp_path_factory):
         failures = request.config.getoption("--sailviz-failures")
         pictures = not request.config.getoption("--sailviz-no-pictures")
 
-        def leave_in():
+        def leave_in() -> Path:
             if failures:
                 place = Path(failures).resolve() / re.sub(r"[^\w.+-]+", "_", request.node.nodeid) / name
                 place.mkdir(parents=True, exist_ok=True)
@@ -65,7 +85,7 @@ def recording_regression(request, tmp_path_factory):
     return check
 
 
-def _folder(request, given) -> Path:
+def _folder(request: pytest.FixtureRequest, given: str | Path | None) -> Path:
     if given is not None:
         return Path(given)
     configured = request.config.getini("sailviz_baselines")

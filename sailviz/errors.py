@@ -18,10 +18,28 @@ class Fault:
     what: str
     hint: str = ""
     line: int | None = None
+    given: str = ""  # key of a value put over the file's, which is at fault or has a part in it
 
     def __str__(self) -> str:
-        place = f"{self.where} (line {self.line})" if self.line else self.where
-        return f"{place}: {self.what}" + (f" {self.hint}" if self.hint else "")
+        where = _short(self.where)
+        if self.given and _below(self.where, self.given):
+            where = f"--set {where}"
+        elif self.given:
+            where += f" (with --set {_short(self.given)})"
+        elif self.line:
+            where += f" (line {self.line})"
+        return f"{where}: {self.what}" + (f" {self.hint}" if self.hint else "")
+
+
+def _below(where: str, key: str) -> bool:
+    """Whether a place is a key or lies inside it."""
+    return where == key or where.startswith((f"{key}.", f"{key}["))
+
+
+def _short(word: str) -> str:
+    """A word as a message bears it: on one line and not endless."""
+    text = word if word.isprintable() else repr(word)[1:-1]
+    return text if len(text) <= 120 else f"{text[:80]}...{text[-30:]}"
 
 
 class SailvizError(Exception):
@@ -35,7 +53,7 @@ class SceneError(SailvizError):
         self.faults = faults
         self.source = source
         count = "1 fault" if len(faults) == 1 else f"{len(faults)} faults"
-        super().__init__("\n".join([f"{source}: {count}"] + [f"  {fault}" for fault in faults]))
+        super().__init__("\n".join([f"{_short(source)}: {count}"] + [f"  {fault}" for fault in faults]))
 
 
 class PropagationError(SailvizError):

@@ -8,6 +8,8 @@ from difflib import get_close_matches
 
 from sailviz.constants import AU, DAY, YEAR
 
+LONGEST_WORD = 200  # letters; nothing that a scene may say is longer, and the search takes time with the square
+
 
 def length(value: float) -> str:
     """A length in m in the unit a reader expects."""
@@ -71,7 +73,7 @@ def nearest(word: str, words: Iterable[str]) -> str:
     """ "Did you mean ...?" or the list of what is allowed."""
     words = list(words)
     low = {w.lower(): w for w in words}
-    close = get_close_matches(str(word).lower(), low, n=1, cutoff=0.6)
+    close = get_close_matches(str(word).lower(), low, n=1, cutoff=0.6) if len(str(word)) <= LONGEST_WORD else []
     if close:
         return f'Did you mean "{low[close[0]]}"?'
     return f"Allowed: {', '.join(words)}." if len(words) <= 24 else ""
@@ -80,7 +82,12 @@ def nearest(word: str, words: Iterable[str]) -> str:
 def shown(value: object) -> str:
     """A value as a message shows it: text in quotes, nothing longer than a line bears."""
     try:
-        text = repr(value) if not isinstance(value, str) else f'"{value}"'
+        text = f'"{_printable(value)}"' if isinstance(value, str) else repr(value)
     except ValueError:  # Python writes no number of more than 4300 digits
         return "a number of thousands of digits"
     return text if len(text) <= 60 else text[:57] + "..."
+
+
+def _printable(text: str) -> str:
+    """Text on one line, whatever it is made of."""
+    return text if text.isprintable() else repr(text)[1:-1]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import replace
 
 from pydantic import BaseModel
@@ -130,8 +131,9 @@ def _parent(path: str) -> str:
     return path[: max(path.rfind("."), path.rfind("["), 0)]
 
 
-def locate(faults: list[Fault], text: str) -> list[Fault]:
-    """Faults without repetition, with line numbers where the text of the file tells them."""
+def locate(faults: list[Fault], text: str, given: Collection[str] = ()) -> list[Fault]:
+    """Faults without repetition, with line numbers where the text of the file tells them. given : places of values that
+    were put over those of the file."""
     lines = _lines(text)
     found: list[Fault] = []
     paths: list[str] = []
@@ -143,6 +145,10 @@ def locate(faults: list[Fault], text: str) -> list[Fault]:
             continue
         paths.append(fault.where)
         where = fault.where
+        put = _put_over(where, given)
+        if put:
+            found += [] if (fault := replace(fault, given=put)) in found else [fault]
+            continue
         line = lines.get(where)
         while line is None and where:
             where = _parent(where)
@@ -151,6 +157,14 @@ def locate(faults: list[Fault], text: str) -> list[Fault]:
         if fault not in found:
             found.append(fault)
     return found
+
+
+def _put_over(where: str, given: Collection[str]) -> str:
+    """The value put over the file's that a place lies in, or that lies in the place; "" if there is none."""
+    for key in given:
+        if where == key or where.startswith((f"{key}.", f"{key}[")):
+            return key
+    return next((key for key in given if key.startswith((f"{where}.", f"{where}["))), "")
 
 
 def _lines(text: str) -> dict[str, int]:

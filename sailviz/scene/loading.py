@@ -26,7 +26,7 @@ from sailviz.scene.conflicts import conflicts
 from sailviz.scene.device import Devices
 from sailviz.scene.environment import Environment
 from sailviz.scene.faults import faults_of, locate
-from sailviz.scene.overrides import overridden
+from sailviz.scene.overrides import overridden, place_of
 from sailviz.scene.sections import Approximation, Chaos, Ensemble, Expectation, Limits, Propagation, Recording, Watched
 from sailviz.scene.start import Start
 from sailviz.scene.steering import Steering
@@ -154,23 +154,23 @@ def build_scene(raw: dict[str, Any], values: Mapping[str, Any], text: str, name:
     """A scene of tables as tomllib gives them, with values put over them. text : of the file they were read from, "" if
     none; name : of the source, for messages. SceneError as for `load_scene`."""
     try:
-        return _validated(overridden(raw, values), text, name)
+        return _validated(overridden(raw, values), text, name, [place_of(key) for key in values])
     except RecursionError:
         raise SceneError([_TOO_DEEP], name) from None
 
 
-def _validated(raw: dict[str, Any], text: str, source: str) -> Scene:
+def _validated(raw: dict[str, Any], text: str, source: str, given: list[str]) -> Scene:
     fields, converted = convert(Scene, raw)
     faults = converted.faults
     try:
         scene = Scene.model_validate(fields)
     except ValidationError as error:
-        raise SceneError(locate(faults + faults_of(error, converted, Scene), text), source) from None
+        raise SceneError(locate(faults + faults_of(error, converted, Scene), text, given), source) from None
+    scene._text, scene._source, scene._raw = text, source, raw
     if not faults:
         faults = [Fault(converted.path(place) or place, what) for place, what in conflicts(scene)]
     if faults:
-        raise SceneError(locate(faults, text), source)
-    scene._text, scene._source, scene._raw = text, source, raw
+        raise SceneError(locate(faults, text, given), source)
     return scene
 
 

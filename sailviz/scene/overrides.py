@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
@@ -18,11 +19,16 @@ def overridden(raw: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, A
         for part in path:
             table = _inner(table, part)
         if not isinstance(table, dict):
-            raise SceneError([Fault(key, "no such place in the scene")], "--set")
+            raise SceneError([Fault(key, "no such place in the scene", given=key)], "--set")
         for sibling in same_quantity(last, table):
             del table[sibling]
         table[last] = _copy(value)
     return result
+
+
+def place_of(key: str) -> str:
+    """A dotted key as places in a file are told: expect.1.value is expect[1].value."""
+    return re.sub(r"\.(\d+)(?=\.|$)", r"[\1]", key)
 
 
 def _inner(table: Any, part: str) -> Any:

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from sailviz.scene.device import DistanceControl, ElectrochromicControl, PressureControl
 from sailviz.scene.environment import Winds
 from sailviz.scene.values import POSITIVE, Angle, Length, Section, Time, one_of, wrong
-from sailviz.words import nearest
+from sailviz.words import nearest, shown
 
 
 class DenseOutput(Section):
@@ -156,7 +156,7 @@ class Expectation(Section):
         from sailviz.scene.quantities import spellings
 
         if self.quantity not in spellings():
-            raise wrong(f'unknown quantity "{self.quantity}". {nearest(self.quantity, spellings())}')
+            raise wrong(f"unknown quantity {shown(self.quantity)}. {nearest(self.quantity, spellings())}")
         if (self.quantity == "closed_form_error") != (self.closed_form is not None):
             raise wrong('closed_form belongs to quantity = "closed_form_error" and to no other')
         one_of(self, "at", "at_time")

@@ -26,6 +26,7 @@ from sailviz.scene.environment import (
     ReplayedWind,
     SteadyWind,
 )
+from sailviz.scene.named_files import folder_of
 from sailviz.scene.values import Section
 
 if TYPE_CHECKING:
@@ -189,9 +190,8 @@ def _series(path: str, repair: bool) -> Series:
 
 
 def wind_file(scene: Scene, wind: ReplayedWind) -> Path:
-    """Where a wind's series lies: beside the scene file, or an absolute path."""
-    here = Path(scene.source).parent if Path(scene.source).is_file() else Path()
-    return here / wind.file
+    """Where a wind's series lies: in the folder of the scene file, or below it."""
+    return folder_of(scene) / wind.file
 
 
 def measured_wind(scene: Scene, wind: ReplayedWind, place: str = "environment.solar_wind") -> Series:

@@ -14,9 +14,10 @@ from pydantic_core import ValidationError
 from sailviz.errors import Fault, SceneError
 from sailviz.scene.faults import faults_of, locate
 from sailviz.scene.loading import find_scene
+from sailviz.scene.named_files import outside
 from sailviz.scene.units_in_keys import convert
 from sailviz.scene.values import Section, one_of
-from sailviz.shipped import shipped_sweeps
+from sailviz.shipped import shipped_scenes, shipped_sweeps
 from sailviz.sweeps.distributions import Axis, Draw, axis, drawn, varied
 from sailviz.words import nearest
 
@@ -116,6 +117,8 @@ def read_sweep_file(path: Path, source: str) -> SweepRead:
         file = SweepFile.model_validate(fields)
     except ValidationError as error:
         raise SceneError(locate(faults + faults_of(error, converted, SweepFile), text), source) from None
+    if (name := file.sweep.scene) not in shipped_scenes() and (what := outside(path.parent, name)):
+        raise SceneError(locate([*faults, Fault("sweep.scene", f"{what}.")], text), source)
     items = []
     for i, section in enumerate(file.vary):
         try:

@@ -46,7 +46,7 @@ def faults(source, **more) -> dict[str, str]:
     [
         ({"radius_au": 1}, {"radius_km": 149597870.7}),
         ({"radius_au": 1}, {"radius_m": 149_597_870_700}),
-        ({"radius_earth_radii": 2}, {"radius_km": 12756.274}),
+        ({"radius_earth_radii": 200}, {"radius_km": 1275627.4}),
     ],
 )
 def test_every_spelling_of_a_length_is_the_same_length(one, other):
@@ -470,3 +470,67 @@ def test_verbs_are_found_on_first_use():
         assert callable(getattr(sailviz, verb))
     with pytest.raises(AttributeError, match="no attribute"):
         _ = sailviz.simulat
+
+
+# ---------------------------------------------------------------- --set and long words
+@pytest.mark.parametrize(
+    ("key", "value", "where"),
+    [
+        ("start.radius_au", -1, "--set start.radius_au: must be greater than 0 au"),
+        ("start.radius_km", -1, "--set start.radius_km: must be greater than 0 km"),
+        ("expect.1.value", "x", "--set expect[1].value: must be a number"),
+        ("device", {"kind": "non"}, '--set device.kind: "non" is not a kind of device'),
+        ("epoch", "soon", "--set epoch: 'soon' is no date"),
+        ("expect.99.value", 1, "--set expect.99.value: no such place"),
+        ("nosuch.key", 1, "nosuch (with --set nosuch.key): unknown key"),
+    ],
+)
+def test_a_fault_of_a_value_put_over_the_file_names_no_line_of_it(key, value, where):
+    with pytest.raises(SceneError) as caught:
+        load_scene("displaced/circular", set={key: value})
+    assert [str(fault)[: len(where)] for fault in caught.value.faults] == [where]
+    assert "(line" not in str(caught.value)
+
+
+def test_faults_of_the_file_keep_their_lines_beside_those_of_values_put_over_it(tmp_path):
+    file = tmp_path / "scene.toml"
+    file.write_text(shipped_scenes()["displaced/circular"].read_text().replace("outputs = 3000", "outputs = 0"))
+    with pytest.raises(SceneError) as caught:
+        load_scene(file, set={"start.radius_au": -1})
+    given = {fault.where: (fault.given, fault.line) for fault in caught.value.faults}
+    assert given["start.radius_au"] == ("start.radius_au", None)
+    assert given["propagation.outputs"][0] == ""
+    assert given["propagation.outputs"][1] > 1
+
+
+LONG = "radius" * 900
+MASS = {"quantity": "mass_kg", "value": 1, "within": 1}
+LONG_WORDS = [
+    {LONG: 1},
+    {"title": "t", LONG: {"a": 1}},
+    with_parts(start={"kind": LONG}),
+    with_parts(start={"kind": "circular", LONG: 1}),
+    with_parts(device={"kind": "solar-sail", "lightness_number": 0.1, "film": LONG}),
+    with_parts(body=LONG),
+    with_parts(epoch=LONG),
+    with_parts(expect=[{"quantity": LONG, "at": "end", "value": 1, "within": 1}]),
+    with_parts(expect=[{**MASS, "at": LONG}]),
+    with_parts(
+        expect=[{"quantity": "mass_kg", "at": "end", "ensemble": LONG, "statistic": "mean", "value": 1, "within": 1}]
+    ),
+    with_parts(start={"kind": "circular", "radius_au": LONG}),
+]
+
+
+@pytest.mark.parametrize("raw", LONG_WORDS, ids=range(len(LONG_WORDS)))
+def test_long_words_are_shortened_in_messages_and_cost_no_time(raw):
+    with pytest.raises(SceneError) as caught:
+        load_scene(raw)
+    assert LONG[:100] not in str(caught.value).replace(LONG[:80] + "...", "")
+    assert max(map(len, str(caught.value).splitlines())) < 1500
+
+
+def test_words_with_line_breaks_stay_on_one_line():
+    with pytest.raises(SceneError) as caught:
+        load_scene(with_parts(body="su\nn", **{"a\nb": 1}))
+    assert len(str(caught.value).splitlines()) == 1 + len(caught.value.faults)

@@ -81,6 +81,12 @@ def test_yearly_factor_stays_for_a_year():
     assert len({round(part[0], 9) for part in values}) == 4
 
 
+@pytest.fixture(autouse=True)
+def _beside_the_files(tmp_path, monkeypatch):
+    """A scene of no file finds its winds in the working directory."""
+    monkeypatch.chdir(tmp_path)
+
+
 def series(path, hours=24 * 30, gap=(), wrong=False):
     """A measured wind: pressure rises by 0.01 nPa an hour from 1 nPa."""
     rows = ["time_h,pressure_nPa,speed_km_s"] if not wrong else ["time_h,pressure_Pa,speed_km_s"]
@@ -88,7 +94,7 @@ def series(path, hours=24 * 30, gap=(), wrong=False):
         value = "" if i in gap else f"{1 + 0.01 * i + 0.2 * (i % 7)}"
         rows.append(f"{i},{value},{400 + i % 5}")
     path.write_text("\n".join(rows) + "\n")
-    return {"kind": "replay", "file": str(path), "seed": 3}
+    return {"kind": "replay", "file": path.name, "seed": 3}
 
 
 def test_replayed_wind_is_the_series_with_gaps_filled_between_their_neighbours(tmp_path):
@@ -107,7 +113,7 @@ def test_replayed_wind_is_the_series_with_gaps_filled_between_their_neighbours(t
     [({"wrong": True}, 10, "nPa"), ({}, 31, "does not begin again"), (None, 10, "No such file")],
 )
 def test_a_bad_series_is_refused_in_one_sentence(tmp_path, options, days, sentence):
-    wind = {"kind": "replay", "file": str(tmp_path / "none.csv"), "seed": 1}
+    wind = {"kind": "replay", "file": "none.csv", "seed": 1}
     if options is not None:
         wind = series(tmp_path / "own.csv", **options)
     with pytest.raises(SceneError) as refused:

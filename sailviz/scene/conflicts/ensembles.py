@@ -14,6 +14,7 @@ from sailviz.scene.conflicts.surroundings import IRRADIANCES, WINDS
 from sailviz.scene.device import Device, ElectricSail, VoltageControl, control_of
 from sailviz.scene.sections import Chaos, Ensemble, ManyFlights
 from sailviz.scene.values import Section
+from sailviz.words import shown
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
@@ -104,7 +105,7 @@ def _names(placed: Sequence[tuple[str, ManyFlights]]) -> Faults:
     for place, item in placed:
         word = "".join(letter if letter.isalnum() else "_" for letter in item.name.lower())
         if word in words:
-            found.append((f"{place}.name", f'another ensemble is called "{item.name}" already'))
+            found.append((f"{place}.name", f"another ensemble is called {shown(item.name)} already"))
         words.add(word)
     return found
 

@@ -13,7 +13,7 @@ from sailviz.scene.conflicts.craft import has_surface
 from sailviz.scene.conflicts.ensembles import placed_ensembles
 from sailviz.scene.quantities import MEANS, PLACES, spellings
 from sailviz.scene.sections import STATISTICS_OF_ROWS
-from sailviz.words import nearest
+from sailviz.words import nearest, shown
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
@@ -78,7 +78,7 @@ def expected_of_ensembles(scene: Scene) -> Faults:
         if expected.ensemble is None:
             continue
         if expected.ensemble not in known:
-            words = f'no such ensemble "{expected.ensemble}". {nearest(expected.ensemble, known)}'
+            words = f"no such ensemble {shown(expected.ensemble)}. {nearest(expected.ensemble, known)}"
             found.append((f"expect[{i}].ensemble", words))
         elif expected.at != "end":
             found.append((f"expect[{i}].at", 'statistics of an ensemble are those of its ends: at = "end"'))
@@ -95,7 +95,7 @@ def expected_moments(scene: Scene) -> Faults:
     words = [*STATISTICS_OF_ROWS, *sorted(happens)]
     for i, expected in enumerate(scene.expect):
         if expected.at is not None and expected.at not in words:
-            found.append((f"expect[{i}].at", f'no such moment "{expected.at}". {nearest(expected.at, words)}'))
+            found.append((f"expect[{i}].at", f"no such moment {shown(expected.at)}. {nearest(expected.at, words)}"))
         if expected.at_time is not None and not 0 <= expected.at_time <= scene.propagation.duration:
             found.append((f"expect[{i}].at_time", "outside the run"))
     return found

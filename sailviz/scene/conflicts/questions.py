@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sailviz.scene.conflicts import craft, departures, limits, low_orbit, moments
+from sailviz.scene.conflicts import craft, departures, limits, low_orbit, moments, named_files
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.approximations import approximations
 from sailviz.scene.conflicts.ensembles import ensembles
@@ -39,6 +39,7 @@ QUESTIONS = (
     low_orbit.start_round_the_earth,
     low_orbit.room_for_the_tether,
     moments.duration,
+    named_files.winds,
     limits.rows,
     limits.draws,
     limits.steps,

@@ -1,0 +1,51 @@
+"""Files that a scene or a sweep names: regular files inside its folder, so that a file from elsewhere reads nothing
+else of the machine that it is flown on."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path, PureWindowsPath
+from typing import TYPE_CHECKING
+
+from sailviz.words import shown
+
+if TYPE_CHECKING:
+    from sailviz.scene.loading import Scene
+
+KINDS = (
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISFIFO, "a pipe"),
+    (stat.S_ISSOCK, "a socket"),
+    (stat.S_ISCHR, "a device"),
+    (stat.S_ISBLK, "a device"),
+)
+
+
+def folder_of(scene: Scene) -> Path:
+    """Where the files that a scene names lie: beside its own, or in the working directory for a scene of no file."""
+    return Path(os.path.abspath(os.path.dirname(scene.source) if os.path.isfile(scene.source) else ""))
+
+
+def outside(folder: Path, name: str) -> str:
+    """Why a name may not be read, in a sentence without a full stop; "" if it may, or if there is no such file."""
+    if not name.strip() or not name.isprintable():
+        return f"{shown(name)} is no name of a file"
+    windows = PureWindowsPath(name)
+    if name.startswith(("/", "\\", "~")) or windows.drive or windows.root:
+        return f"{shown(name)} is an absolute path: name a file in the folder of this one or below it"
+    if ".." in windows.parts:
+        return f'{shown(name)} leads out of the folder of this file: ".." is not allowed in a name'
+    path = folder / name
+    try:
+        if not path.resolve().is_relative_to(folder.resolve()):
+            return f"{shown(name)} is a link that leads out of the folder of this file"
+        mode = path.stat().st_mode
+    except FileNotFoundError:
+        return ""
+    except (OSError, RuntimeError, ValueError) as error:
+        return f"{shown(name)} cannot be read: {(getattr(error, 'strerror', None) or str(error)).lower()}"
+    if stat.S_ISREG(mode):
+        return ""
+    word = next((word for holds, word in KINDS if holds(mode)), "something else")
+    return f"{shown(name)} is {word}, not a regular file"

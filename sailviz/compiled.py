@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 import numba
+import numpy as np
 from numba.core import sigutils
 from numba.core.ccallback import CFunc
 
@@ -74,6 +75,16 @@ def called(function: Callable[..., Any]) -> Any:
     """Like `inlined`, for functions called from so many places that copies of them would only lengthen the
     compilation."""
     return _njit(_nrt=False, **_OPTIONS)(function)
+
+
+STATE = 10  # numbers of a callback's state: position m, velocity m/s, mass kg, and for a device the unit normal
+
+
+def layout(declared: type) -> np.dtype[Any]:
+    """The structured type of a NamedTuple of floats and ints, by which compiled code reads its fields by name. The
+    numbers that a callback has of its own must all be floats."""
+    kinds = {float: np.float64, int: np.int64}
+    return np.dtype([(name, kinds[kind]) for name, kind in get_type_hints(declared).items()], align=True)
 
 
 def is_compiled(function: Any) -> bool:

@@ -9,11 +9,15 @@ ionosphere: the table is the Earth's air as a function of latitude, local time, 
 from __future__ import annotations
 
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
 from sailviz.compiled import compiled, inlined
 from sailviz.environment.grid import cell, flat, places, quantity
+from sailviz.environment.ionosphere import exponential
+
+NONE, EXPONENTIAL, TABLED = range(3)  # kinds of air
 
 LEVELS = (70.0, 100.0, 145.0, 200.0)  # F10.7, sfu
 GEOMAGNETIC = (5.0, 7.0, 10.0, 15.0)  # ap, nT, that goes with each of them
@@ -23,6 +27,16 @@ LATITUDES, TIMES = 19, 24
 
 _HARMONICS = 8  # local times that pymsis is asked for; they fix the model's three tides, and these the table
 _WITHOUT = {"all_ut_effects": 0, "longitudinal": 0, "mixed_ut_long": 0, "mixed_ap_ut_long": 0}
+
+
+class Parameters(NamedTuple):
+    """The air that a craft meets, and what it offers to it."""
+
+    kind: int = NONE
+    drag_area: float = 0.0  # m2, drag coefficient times area
+    reference_radius: float = 0.0  # m, these three of an exponential atmosphere
+    density: float = 0.0  # kg/m3
+    scale_height: float = 0.0  # m
 
 
 def _altitudes():
@@ -83,6 +97,13 @@ def air_drag(x, y, z, vx, vy, vz, rotation, k):
     qx, qy, qz = vx + rotation * y, vy - rotation * x, vz
     k = -0.5 * k * np.sqrt(qx * qx + qy * qy + qz * qz)
     return k * qx, k * qy, k * qz
+
+
+@inlined
+def exponential_air_drag(x, y, z, vx, vy, vz, m, r, rotation, p):
+    """Drag of an exponential atmosphere, m/s2. p : Parameters."""
+    density = exponential(r, p.reference_radius, p.density, p.scale_height)
+    return air_drag(x, y, z, vx, vy, vz, rotation, density * p.drag_area / m)
 
 
 @compiled

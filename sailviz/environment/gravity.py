@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from sailviz.compiled import inlined
 from sailviz.constants import FLATTENING_EARTH, RADIUS_EARTH
+
+
+class Parameters(NamedTuple):
+    """What `gravity` knows of the central body; the strengths as in `strengths`."""
+
+    mu: float  # m3/s2; gauss_jackson, which adds the central pull itself, puts a 0 here
+    j2_strength: float = 0.0  # m5/s2
+    j3_strength: float = 0.0  # m6/s2
+    j4_strength: float = 0.0  # m7/s2
 
 
 @inlined

@@ -24,7 +24,8 @@ def flat(values, altitudes, levels):
     if len(levels) > MOST_LEVELS or np.any(np.diff(levels) <= 0):
         raise ValueError(f"solar levels must increase and be at most {MOST_LEVELS}, not {levels.tolist()}")
     header = np.zeros(HEADER)
-    header[LATITUDES], header[TIMES], header[ALTITUDES], header[LEVELS] = *values.shape[1:4], len(levels)
+    header[LATITUDES], header[TIMES], header[ALTITUDES] = values.shape[1:4]
+    header[LEVELS] = len(levels)
     header[LOWEST] = altitudes[0]
     header[PER_METRE] = (len(altitudes) - 1) / (altitudes[-1] - altitudes[0])
     header[FIRST_LEVEL : FIRST_LEVEL + len(levels)] = levels

@@ -10,6 +10,7 @@ density by 0.5, 1 and 2.
 from __future__ import annotations
 
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,11 +19,23 @@ from sailviz.constants import ATOMIC_MASS
 from sailviz.environment.grid import cell, flat, places, quantity
 from sailviz.shipped import shipped_folder
 
-FORCE_PROFILE, DENSITY_PROFILE = 0, 1
+FORCE_PROFILE, DENSITY_PROFILE, TABLE_PROFILE = range(3)
 PROFILES = {"exponential-force": FORCE_PROFILE, "exponential-density": DENSITY_PROFILE}
 
 LEVELS = {"min2019": 70.0, "mid2014": 145.0, "max2001": 193.0}  # F10.7 of the table's three epochs
 LOWEST, HIGHEST = 200e3, 1500e3  # m, between which the table stands; its edges hold outside
+
+
+class Parameters(NamedTuple):
+    """The plasma that a tether meets."""
+
+    kind: int = FORCE_PROFILE
+    reference_altitude: float = 0.0  # m, this and the next four of an exponential profile
+    value: float = 0.0  # N/m of a force profile, 1/m3 of a density profile
+    scale_height: float = 0.0  # m
+    ion_mass: float = 0.0  # kg
+    surface_radius: float = 0.0  # m, from which altitudes count
+    density_factor: float = 1.0  # by which the plasma is denser than its model
 
 
 @inlined

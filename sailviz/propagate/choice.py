@@ -6,11 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailviz.propagate.dynamics import DEVICE, MU, SURFACE_RADIUS, THRUSTER
-from sailviz.propagate.gauss_jackson import ANGLE, LARGEST_ECCENTRICITY
+from sailviz.environment import atmosphere, ionosphere
+from sailviz.propagate.dynamics import loses_mass
 from sailviz.propagate.gauss_jackson_coefficients import LAGS
-from sailviz.propagate.low_orbit_callback import TABLE_PROFILE
-from sailviz.propagate.parameters import AIR, ECLIPSE_POWER, PLASMA, PLASMA_ON, POWER, TABLED_AIR
+from sailviz.propagate.gauss_jackson_steps import ANGLE, LARGEST_ECCENTRICITY
 
 DOP853, GAUSS_JACKSON = "dop853", "gauss-jackson"
 FEWEST_TURNS = 50  # below, DOP853 is as accurate and the gain is microseconds
@@ -39,13 +38,13 @@ def choose(model, position, velocity, duration, breaks=(0.0,), wanted="auto") ->
         raise ValueError(f'the integrator must be "auto", "{DOP853}" or "{GAUSS_JACKSON}", not {wanted!r}.')
     if wanted == DOP853:
         return Choice(DOP853, "asked for")
-    p = model.parameters
-    mu, surface = p[MU], p[SURFACE_RADIUS]
+    p = model.named
+    mu, surface = p.gravity.mu, p.surface.radius
     r, v = np.asarray(position, float), np.asarray(velocity, float)
     size = np.linalg.norm(r)
     axis = 1.0 / (2.0 / size - v @ v / mu)  # semi-major, m
     e = float(np.linalg.norm(((v @ v) * r - (r @ v) * v) / mu - r / size))
-    if model.device == THRUSTER and p[DEVICE + 2] != 0.0:
+    if loses_mass(model):
         obstacle = "the thruster burns propellant, and the multistep method keeps the mass constant"
     elif not axis > 0.0:
         obstacle = "the orbit is not bound"
@@ -71,6 +70,7 @@ def choose(model, position, velocity, duration, breaks=(0.0,), wanted="auto") ->
 
 
 def _kinked(p) -> bool:
-    """Whether the forces of a parameter row have kinks along the way, at places that no schedule knows."""
-    brake = p[PLASMA_ON] != 0.0
-    return p[AIR] == TABLED_AIR or (brake and (p[PLASMA] == TABLE_PROFILE or p[POWER] != p[ECLIPSE_POWER]))
+    """Whether the forces of named parameters have kinks along the way, at places that no schedule knows."""
+    brake = p.brake
+    kinked = p.plasma.kind == ionosphere.TABLE_PROFILE or brake.power != brake.eclipse_power
+    return bool(p.air.kind == atmosphere.TABLED or (brake.present and kinked))

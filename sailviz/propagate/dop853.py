@@ -15,8 +15,8 @@ import numpy as np
 
 from sailviz.compiled import compiled, inlined
 from sailviz.propagate import dop853_coefficients as c
-from sailviz.propagate.dynamics import MU, SIZE, SURFACE_RADIUS, Model, derivative
-from sailviz.propagate.events import Watch, measure
+from sailviz.propagate.dynamics import SIZE, derivative
+from sailviz.propagate.events import Watch
 from sailviz.propagate.stepping import (
     CLOCK,
     DENSE,
@@ -28,7 +28,6 @@ from sailviz.propagate.stepping import (
     INTERVAL,
     NEW,
     REJECTED,
-    ROW,
     STARTED,
     STATUS,
     STEP,
@@ -37,9 +36,13 @@ from sailviz.propagate.stepping import (
     Integration,
     W,
     Y,
-    factor_from,
-    fill,
+    begin,
+    close_block,
     happenings,
+    next_limit,
+    open_block,
+    rows_until,
+    settle,
     surface_met,
 )
 from sailviz.propagate.stepping import DONE as DONE
@@ -99,7 +102,7 @@ def _error(k, h, mu):
 
 
 @inlined
-def stages(t, h, end, factor, model, k):
+def stages(t, h, end, factor, p, k):
     """The stages 2 to 12 of a step, the new state, and stage 13, the derivative there: k[i - 1] = f(t + C_i h, k[W]).
     end is the time of the last two, t + h or a moment before it.
 
@@ -107,80 +110,80 @@ def stages(t, h, end, factor, model, k):
     """
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (c.A2_1 * k[0, j])
-    derivative(t + c.C2 * h, k[W], factor, model, k[1])
+    derivative(t + c.C2 * h, k[W], factor, p, k[1])
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (c.A3_1 * k[0, j] + c.A3_2 * k[1, j])
-    derivative(t + c.C3 * h, k[W], factor, model, k[2])
+    derivative(t + c.C3 * h, k[W], factor, p, k[2])
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (c.A4_1 * k[0, j] + c.A4_3 * k[2, j])
-    derivative(t + c.C4 * h, k[W], factor, model, k[3])
+    derivative(t + c.C4 * h, k[W], factor, p, k[3])
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (c.A5_1 * k[0, j] + c.A5_3 * k[2, j] + c.A5_4 * k[3, j])
-    derivative(t + c.C5 * h, k[W], factor, model, k[4])
+    derivative(t + c.C5 * h, k[W], factor, p, k[4])
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (c.A6_1 * k[0, j] + c.A6_4 * k[3, j] + c.A6_5 * k[4, j])
-    derivative(t + c.C6 * h, k[W], factor, model, k[5])
+    derivative(t + c.C6 * h, k[W], factor, p, k[5])
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (c.A7_1 * k[0, j] + c.A7_4 * k[3, j] + c.A7_5 * k[4, j] + c.A7_6 * k[5, j])
-    derivative(t + c.C7 * h, k[W], factor, model, k[6])
+    derivative(t + c.C7 * h, k[W], factor, p, k[6])
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (
             c.A8_1 * k[0, j] + c.A8_4 * k[3, j] + c.A8_5 * k[4, j] + c.A8_6 * k[5, j] + c.A8_7 * k[6, j]
         )  # fmt: skip
-    derivative(t + c.C8 * h, k[W], factor, model, k[7])
+    derivative(t + c.C8 * h, k[W], factor, p, k[7])
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (
             c.A9_1 * k[0, j] + c.A9_4 * k[3, j] + c.A9_5 * k[4, j] + c.A9_6 * k[5, j] + c.A9_7 * k[6, j]
             + c.A9_8 * k[7, j]
         )  # fmt: skip
-    derivative(t + c.C9 * h, k[W], factor, model, k[8])
+    derivative(t + c.C9 * h, k[W], factor, p, k[8])
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (
             c.A10_1 * k[0, j] + c.A10_4 * k[3, j] + c.A10_5 * k[4, j] + c.A10_6 * k[5, j] + c.A10_7 * k[6, j]
             + c.A10_8 * k[7, j] + c.A10_9 * k[8, j]
         )  # fmt: skip
-    derivative(t + c.C10 * h, k[W], factor, model, k[9])
+    derivative(t + c.C10 * h, k[W], factor, p, k[9])
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (
             c.A11_1 * k[0, j] + c.A11_4 * k[3, j] + c.A11_5 * k[4, j] + c.A11_6 * k[5, j] + c.A11_7 * k[6, j]
             + c.A11_8 * k[7, j] + c.A11_9 * k[8, j] + c.A11_10 * k[9, j]
         )  # fmt: skip
-    derivative(t + c.C11 * h, k[W], factor, model, k[10])
+    derivative(t + c.C11 * h, k[W], factor, p, k[10])
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (
             c.A12_1 * k[0, j] + c.A12_4 * k[3, j] + c.A12_5 * k[4, j] + c.A12_6 * k[5, j] + c.A12_7 * k[6, j]
             + c.A12_8 * k[7, j] + c.A12_9 * k[8, j] + c.A12_10 * k[9, j] + c.A12_11 * k[10, j]
         )  # fmt: skip
-    derivative(end, k[W], factor, model, k[11])
+    derivative(end, k[W], factor, p, k[11])
     for j in range(SIZE):
         k[NEW, j] = k[Y, j] + h * (
             c.A13_1 * k[0, j] + c.A13_6 * k[5, j] + c.A13_7 * k[6, j] + c.A13_8 * k[7, j] + c.A13_9 * k[8, j]
             + c.A13_10 * k[9, j] + c.A13_11 * k[10, j] + c.A13_12 * k[11, j]
         )  # fmt: skip
-    derivative(end, k[NEW], factor, model, k[12])
+    derivative(end, k[NEW], factor, p, k[12])
 
 
 @inlined
-def interpolant(t, h, factor, model, k, m):
+def interpolant(t, h, factor, p, k, m):
     """Monomial coefficients m (8, SIZE) of the dense output over the step: y(t + x h) = sum m[i] x^i."""
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (
             c.A14_1 * k[0, j] + c.A14_7 * k[6, j] + c.A14_8 * k[7, j] + c.A14_9 * k[8, j] + c.A14_10 * k[9, j]
             + c.A14_11 * k[10, j] + c.A14_12 * k[11, j] + c.A14_13 * k[12, j]
         )  # fmt: skip
-    derivative(t + c.C14 * h, k[W], factor, model, k[13])
+    derivative(t + c.C14 * h, k[W], factor, p, k[13])
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (
             c.A15_1 * k[0, j] + c.A15_6 * k[5, j] + c.A15_7 * k[6, j] + c.A15_8 * k[7, j] + c.A15_11 * k[10, j]
             + c.A15_12 * k[11, j] + c.A15_13 * k[12, j] + c.A15_14 * k[13, j]
         )  # fmt: skip
-    derivative(t + c.C15 * h, k[W], factor, model, k[14])
+    derivative(t + c.C15 * h, k[W], factor, p, k[14])
     for j in range(SIZE):
         k[W, j] = k[Y, j] + h * (
             c.A16_1 * k[0, j] + c.A16_6 * k[5, j] + c.A16_7 * k[6, j] + c.A16_8 * k[7, j] + c.A16_9 * k[8, j]
             + c.A16_13 * k[12, j] + c.A16_14 * k[13, j] + c.A16_15 * k[14, j]
         )  # fmt: skip
-    derivative(t + c.C16 * h, k[W], factor, model, k[15])
+    derivative(t + c.C16 * h, k[W], factor, p, k[15])
     for j in range(SIZE):
         f0 = k[NEW, j] - k[Y, j]
         f1 = h * k[0, j] - f0
@@ -217,7 +220,7 @@ def interpolant(t, h, factor, model, k, m):
 
 
 @inlined
-def attempt(t, limit, wish, largest_step, t_end, tolerance, factor, model, k, count, mu):
+def attempt(t, limit, wish, largest_step, t_end, tolerance, factor, p, k, count, mu):
     """One accepted step from t towards limit, or count[STATUS] saying why there is none. Returns (h, whether it lands
     on the limit, whether others were rejected before, the length last wished for, its error over the tolerance)."""
     rejected, error = False, 0.0
@@ -230,7 +233,7 @@ def attempt(t, limit, wish, largest_step, t_end, tolerance, factor, model, k, co
             count[STATUS] = UNDERFLOW
             break
         # a step that lands on a kink sees the steering table as it is before the kink
-        stages(t, h, np.nextafter(limit, t) if landing else t + h, factor, model, k)
+        stages(t, h, np.nextafter(limit, t) if landing else t + h, factor, p, k)
         error = _error(k, h, mu) / tolerance
         if error < 1.0:
             break
@@ -268,72 +271,45 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
     UNDERFLOW or NOT_FINITE: the integration broke down at time(s).
     """
     return advance_compiled(
-        *s, *model, breaks, factors, *watch, t_out, out, float(t_end), float(tolerance), float(largest_step)
+        *s, model.parameters, breaks, factors, *watch, t_out, out, float(t_end), float(tolerance), float(largest_step)
     )
 
 
 @compiled
 def advance_compiled(
-    work, count, sign, event, device, steering, parameters, breaks, factors,
+    work, count, sign, event, parameters, breaks, factors,
     kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step,
 ):  # fmt: skip
     """`advance` with its tuples taken apart: at the border of compiled code whole tuples would cost 6 us more."""
     s = Integration(work, count, sign, event)
-    model = Model(device, steering, parameters)
+    p = parameters[0]
     watch = Watch(kinds, levels, senses, actions)
-    n, components = t_out.shape[0], out.shape[0]
-    mu, surface = model.parameters[MU], model.parameters[SURFACE_RADIUS]
+    n = t_out.shape[0]
+    mu, surface = p.gravity.mu, p.surface.radius
     k, m, clock = work, work[DENSE:CLOCK], work[CLOCK]
     y, w, new = k[Y], k[W], k[NEW]
     watched = len(watch.kind)
     if count[STARTED] == 0:
-        count[STARTED] = 1
+        begin(s, watch, breaks, factors, p)
+        derivative(clock[TIME], y, factors[count[INTERVAL]], p, k[0])
         r = np.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
-        while count[INTERVAL] + 1 < len(breaks) and breaks[count[INTERVAL] + 1] <= clock[TIME]:
-            count[INTERVAL] += 1
-        factor_from(clock[TIME], y, factors, count[INTERVAL], model)
-        derivative(clock[TIME], y, factors[count[INTERVAL]], model, k[0])
         speed = np.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5])
         dynamical = r / max(speed, np.sqrt(mu / r))
         clock[STEP] = min(3.0 * tolerance**0.125 * dynamical, largest_step)
-        for e in range(watched):
-            s.sign[e] = measure(watch.kind[e], watch.level[e], y, mu)
-    row = 0
-    if count[STATUS] == EVENTS_FULL:
-        row = count[ROW]
-    ended = count[STATUS] == STOPPED or count[STATUS] == SURFACE  # in a step of which rows are still to be filled
-    if not ended:
-        count[STATUS] = DONE
-    t = clock[TIME]
-    interval = count[INTERVAL]
+    row, ended = open_block(count)
+    t, interval = clock[TIME], count[INTERVAL]
     factor = factors[interval] * count[IN_USE]
-    while row < n:
-        # rows inside the last step, or exactly at its end
-        if t_out[row] < t:
-            last = row + 1
-            while last < n and t_out[last] < t:
-                last += 1
-            # whole vectors: what is filled beyond the step is overwritten by the next
-            whole = min(n, row + (last - row + VECTOR - 1) // VECTOR * VECTOR)
-            fill(m, clock[DENSE_START], clock[DENSE_STEP], t_out, out, row, whole)
-            row = last
-            continue
-        if t_out[row] == t:
-            for j in range(components):
-                out[j, row] = y[j]
-            row += 1
-            continue
-        if ended:
+    while True:
+        row = rows_until(t, s, t_out, out, row, VECTOR)
+        if row >= n or ended:
             break
         if count[EVENTS] > MOST_EVENTS:
             count[STATUS] = EVENTS_FULL
             break
         # one accepted step, landing on the next kink of the thrust or on the end
-        limit = t_end
-        if interval + 1 < len(breaks) and breaks[interval + 1] < limit:
-            limit = breaks[interval + 1]
+        limit = next_limit(breaks, interval, t_end)
         h, landing, rejected, wish, error = attempt(
-            t, limit, clock[STEP], largest_step, t_end, tolerance, factor, model, k, count, mu
+            t, limit, clock[STEP], largest_step, t_end, tolerance, factor, p, k, count, mu
         )
         if count[STATUS] != DONE:
             break
@@ -344,30 +320,14 @@ def advance_compiled(
         touched, passed = surface_met(y, new, mu, surface)
         clock[DENSE_START], clock[DENSE_STEP] = t0, h
         if watched > 0 or touched or passed or t_out[row] < t:
-            interpolant(t0, h, factor, model, k, m)
+            interpolant(t0, h, factor, p, k, m)
         stop_x = 2.0
         if watched > 0 or touched or passed:
             stop_x = happenings(s, watch, t0, h, touched, passed, EVENT_SAMPLES, mu, surface, new, w)
         if stop_x < 2.0:
             t = t0 + stop_x * h
-        new_factor = factor
-        if t == limit and limit < t_end and interval + 1 < len(breaks):
-            interval += 1
-            new_factor = factor_from(t, new, factors, interval, model)
-        new_factor = new_factor * count[IN_USE]
-        if stop_x < 2.0 or new_factor != factor or (t == limit and limit < t_end):
-            factor = new_factor
-            derivative(t, new, factor, model, k[0])
-        else:
-            for j in range(SIZE):
-                k[0, j] = k[12, j]
-        for j in range(SIZE):
-            y[j] = new[j]
-        clock[TIME], count[INTERVAL] = t, interval
-        if count[STATUS] != DONE:
-            ended = True
-    count[ROW] = row
-    clock[TIME], count[INTERVAL] = t, interval
-    if ended and row == n and n > 0 and t_out[n - 1] < t:
-        return DONE  # the next block may have rows before the end
-    return count[STATUS]
+        interval, factor, jumps = settle(s, breaks, factors, p, t, limit, t_end, stop_x < 2.0, interval, factor)
+        if jumps:
+            derivative(t, y, factor, p, k[0])
+        ended = count[STATUS] != DONE
+    return close_block(s, t_out, row, ended)

@@ -1,252 +1,312 @@
 """The one right-hand side: state -> its derivative, for every device, steering law and environment.
 
-State y (7,): position m, velocity m/s, mass kg. A Model is integers that choose branches and one flat row of
-parameters, tables and addresses of a user's compiled functions (row.py); it costs nothing against specialised code and
-is compiled once for all.
+State y (7,): position m, velocity m/s, mass kg. A Model is one record of named parameters (parameters.py), of which two
+integers choose the branches, and one flat array of tables; it costs nothing against specialised code and is compiled
+once for all.
+What is not built in here comes as a callback (callbacks.py).
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from sailviz.compiled import called, compiled, inlined
-from sailviz.environment.atmosphere import air_drag
+from sailviz.environment import atmosphere
+from sailviz.environment.atmosphere import exponential_air_drag
 from sailviz.environment.gravity import gravity
-from sailviz.environment.ionosphere import exponential
-from sailviz.propagate.callbacks import plugged, user_vector
-from sailviz.propagate.parameters import (
-    AIR,
-    AIR_TABLE,
-    BRAKE,
-    CONTROL,
-    CONTROL_LAW,
-    CONTROL_TABLE,
-    DEVICE,
-    EXPONENTIAL_AIR,
-    FLUX,
-    HEIGHT,
-    INTERPOLATION,
-    J2_STRENGTH,
-    LOW_ORBIT,
-    MU,
-    PLASMA,
-    PLASMA_TABLE,
-    PRIMER_KIND,
-    PRIMER_LAW,
-    PRIMER_MU,
-    ROTATION,
-    ROWS,
-    SHADOW,
-    STEER_AS,
-    STEERING,
-    SUN,
-    SURFACE_RADIUS,
-    TABLE,
-    THIRD_BODY,
-    USER_FORCE,
-    USER_STEERING,
-    ZONAL,
+from sailviz.environment.third_body import third_body_gravity
+from sailviz.propagate.callbacks import Callback, call, user_vector
+from sailviz.propagate.parameters import PARAMETERS, PARTS, Parameters, Primer, array_at
+from sailviz.propulsion.devices import (
+    CALLED,
+    ELECTRIC_SAIL,
+    NO_DEVICE,
+    PLASMA_BRAKE,
+    SOLAR_SAIL,
+    THRUSTER,
 )
-from sailviz.propulsion.devices import ELECTRIC_SAIL, NO_DEVICE, PLASMA_BRAKE, SOLAR_SAIL, THRUSTER  # noqa: F401
 from sailviz.propulsion.electric_sail import esail_force
 from sailviz.propulsion.solar_sail import sail_force
 from sailviz.propulsion.thruster import thruster_force
-from sailviz.steering import attitude as law
+from sailviz.steering import attitude
 
 SIZE = 7  # of the state
+
+# where the numbers of a built-in device or law stand in the record
+DEVICE_PARTS = {
+    SOLAR_SAIL: "solar_sail",
+    ELECTRIC_SAIL: "electric_sail",
+    THRUSTER: "thruster",
+    PLASMA_BRAKE: "brake",
+}
+STEERING_PARTS = {
+    attitude.ORBITAL: "components",
+    attitude.MERIDIAN: "components",
+    attitude.INERTIAL: "inertial",
+    attitude.LOCAL: "local",
+}
 
 
 class Model(NamedTuple):
     """What acts on the craft. Built by `model`."""
 
-    device: int
-    steering: int
-    parameters: np.ndarray  # (TABLE + 7 k,), the k rows of the steering table from TABLE on
+    parameters: np.ndarray[Any, Any]  # (1,) of PARAMETERS
+    tables: np.ndarray[Any, Any]  # (k,) float64, whose address stands in the parameters
+
+    @property
+    def named(self) -> Parameters:
+        """The parameters, `model.named.sun.mean_longitude`, for Python: a copy."""
+        values = zip(PARTS.values(), self.parameters[0].tolist(), strict=True)
+        return Parameters(*(part(*numbers) for part, numbers in values))
+
+    @property
+    def device(self) -> int:
+        """Which of propulsion.devices."""
+        return int(self.parameters["kinds"]["device"][0])
+
+    @property
+    def steering(self) -> int:
+        """Which of steering.attitude."""
+        return int(self.parameters["kinds"]["steering"][0])
 
 
 def model(
-    mu,
+    mu: float,
     *,
-    device=NO_DEVICE,
-    device_parameters=(),
-    steering=law.RADIAL,
-    steering_parameters=(),
-    steer_as=(),
-    interpolation=law.LINEAR,
-    table=None,
-    j2_strength=0.0,
-    zonal=(),
-    surface_radius=0.0,
-    rotation=0.0,
-    third_body=(),
-    sun=(),
-    flux=(),
-    shadow=0,
-    height=0,
-    air=(),
-    air_table=None,
-    plasma=(),
-    plasma_table=None,
-    brake=(),
-    low_orbit=0,
-    primer_law=0,
-    primer_kind=0,
-    control=0,
-    control_table=None,
-    control_law=None,
-    user_steering=0,
-    user_force=0,
+    device: int = NO_DEVICE,
+    device_parameters: Sequence[float] = (),
+    steering: int = attitude.RADIAL,
+    steering_parameters: Sequence[float] = (),
+    interpolation: int = attitude.LINEAR,
+    table: np.ndarray[Any, Any] | None = None,
+    j2_strength: float = 0.0,
+    zonal: Sequence[float] = (),
+    surface_radius: float = 0.0,
+    rotation: float = 0.0,
+    ellipsoid: int = 0,
+    shadow: int = 0,
+    third_body: Sequence[float] = (),
+    sun: Sequence[float] = (),
+    solar_level: Sequence[float] = (),
+    air: Sequence[float] = (),
+    air_table: np.ndarray[Any, Any] | None = None,
+    plasma: Sequence[float] = (),
+    plasma_table: np.ndarray[Any, Any] | None = None,
+    primer_kind: int = 0,
+    steer_as: tuple[int, Sequence[float]] = (NO_DEVICE, ()),
+    steering_callback: Callback | None = None,
+    device_callback: Callback | None = None,
+    forces: Sequence[Callback] = (),
+    control: Callback | None = None,
+    control_table: np.ndarray[Any, Any] | None = None,
+    control_law: np.ndarray[Any, Any] | None = None,
+    user_steering: int = 0,
+    user_force: int = 0,
 ) -> Model:
-    """A Model from its parts. mu m3/s2, j2_strength m5/s2, surface_radius m, rotation rad/s about +z; table (k, 7) of
-    `steering.table`; air_table, plasma_table of the environment's modules; the other tuples are the places of row.py
-    in order."""
-    row = np.zeros(TABLE)
-    row[MU], row[J2_STRENGTH], row[SURFACE_RADIUS], row[ROTATION] = mu, j2_strength, surface_radius, rotation
-    parts = ((STEERING, steering_parameters), (DEVICE, device_parameters), (PLASMA, plasma), (THIRD_BODY, third_body))
-    parts += ((STEER_AS, steer_as), (ZONAL, zonal), (SUN, sun), (FLUX, flux), (AIR, air), (BRAKE, brake))
-    for start, values in parts:
-        row[start : start + len(values)] = values
-    row[USER_STEERING], row[USER_FORCE], row[INTERPOLATION] = user_steering, user_force, interpolation
-    row[SHADOW], row[HEIGHT], row[LOW_ORBIT] = shadow, height, low_orbit
-    row[PRIMER_LAW], row[PRIMER_KIND], row[PRIMER_MU], row[CONTROL] = primer_law, primer_kind, mu, control
+    """A Model from its parts.
+
+    mu m3/s2, j2_strength m5/s2, zonal the strengths of J3 and J4, surface_radius m, rotation rad/s about +z;
+    device_parameters, steering_parameters, third_body, sun, solar_level, air, plasma : the Parameters of these in
+    their order; table (k, 7) of `attitude.table`; air_table, plasma_table of the environment's modules; steer_as : the
+    sail for which a primer law steers, id and parameters. The callbacks of steering and device belong to the kinds
+    CALLED; forces add up.
+    """
+    parameters = np.zeros(1, PARAMETERS)
+    p = parameters[0]
+    p["kinds"] = (device, steering)
+    p["gravity"] = (mu, j2_strength, *zonal, *[0.0] * (2 - len(zonal)))
+    p["surface"] = (surface_radius, rotation, ellipsoid, shadow)
+    p["table"] = (0 if table is None else len(table), interpolation)
+    p["primer"] = Primer(primer_kind, steer_as[0], mu)
+    parts: dict[str, Sequence[float]] = {
+        "third_body": third_body,
+        "sun": sun,
+        "solar_level": solar_level,
+        "air": air,
+        "plasma": plasma,
+    }
+    parts |= {STEERING_PARTS.get(steering, ""): steering_parameters, DEVICE_PARTS.get(device, ""): device_parameters}
+    for name, values in parts.items():
+        if len(values):
+            p[name] = tuple(PARTS[name](*values))
+    tables: list[np.ndarray[Any, Any]] = []
+    places = p["places"]
+
+    def put(values, place=None):
+        """Where the values begin in the tables, noted in the place of that name."""
+        begin = sum(map(len, tables))
+        tables.append(np.ravel(np.asarray(values, dtype=float)))
+        if place is not None:
+            places[place] = begin
+        return begin
+
+    callbacks = p["callbacks"]
+    callbacks["user_steering"], callbacks["user_force"] = user_steering, user_force
+    given = {"steering": steering_callback, "device": device_callback, "control": control}
+    for word, one in given.items():
+        if one is not None:
+            callbacks[word] = one.address
     if table is not None:
-        row[ROWS] = len(table)
-        row = np.concatenate([row, np.asarray(table, dtype=float).ravel()])
-    tables = ((AIR_TABLE, air_table), (PLASMA_TABLE, plasma_table), (CONTROL_TABLE, control_table))
-    for place, values in (*tables, (CONTROL_LAW, control_law)):
-        if values is not None:
-            row[place] = len(row)
-            row = np.concatenate([row, np.ravel(values)])
-    return Model(int(device), int(steering), row)
+        put(table, "steering")
+    elif steering_callback is not None:
+        put(steering_callback.numbers, "steering")
+    if device_callback is not None:
+        put(device_callback.numbers, "device")
+    callbacks["forces"] = len(forces)
+    pairs = [(one.address, put(one.numbers)) for one in forces]
+    put(pairs, "forces")
+    named = {"air": air_table, "plasma": plasma_table, "control": control_table, "control_law": control_law}
+    for place, rows in named.items():
+        if rows is not None:
+            put(rows, place)
+    put(steer_as[1], "sail")
+    all_tables = np.concatenate([*tables, np.zeros(1)])
+    places["end"], places["address"] = len(all_tables), all_tables.ctypes.data
+    return Model(parameters, all_tables)
+
+
+def loses_mass(model: Model) -> bool:
+    """Whether the device burns propellant, or, being one's own, may."""
+    return model.device == CALLED or (model.device == THRUSTER and model.named.thruster.inverse_exhaust != 0.0)
 
 
 @inlined
-def direction(t, x, y, z, vx, vy, vz, m, ux, uy, uz, model):
+def direction(t, x, y, z, vx, vy, vz, m, ux, uy, uz, p):
     """Unit vector n that the steering law asks for, inertial; its component along u = r_hat; the throttle.
 
     That component is known to the laws that count from the Sun line before n is, which shortens the longest chain of
     dependent operations in a step.
     """
-    p = model.parameters
-    kind = model.steering
-    if kind == law.ORBITAL:
-        n_r, n_t, n_h = p[STEERING], p[STEERING + 1], p[STEERING + 2]
-        nx, ny, nz = law.orbital_direction(ux, uy, uz, x, y, z, vx, vy, vz, n_r, n_t, n_h)
+    kind = p.kinds.steering
+    if kind == attitude.ORBITAL:
+        n_r, n_t, n_h = p.components.radial, p.components.transverse, p.components.normal
+        nx, ny, nz = attitude.orbital_direction(ux, uy, uz, x, y, z, vx, vy, vz, n_r, n_t, n_h)
         return nx, ny, nz, n_r, 1.0
-    if kind == law.RADIAL:
+    if kind == attitude.RADIAL:
         return ux, uy, uz, 1.0, 1.0
-    if kind == law.MERIDIAN:
-        nx, ny, nz = law.meridian_direction(ux, uy, uz, p[STEERING], p[STEERING + 1], p[STEERING + 2])
-        return nx, ny, nz, p[STEERING], 1.0
-    if kind == law.TRANSVERSE:
-        nx, ny, nz = law.orbital_direction(ux, uy, uz, x, y, z, vx, vy, vz, 0.0, 1.0, 0.0)
+    if kind == attitude.MERIDIAN:
+        nx, ny, nz = attitude.meridian_direction(
+            ux, uy, uz, p.components.radial, p.components.transverse, p.components.normal
+        )
+        return nx, ny, nz, p.components.radial, 1.0
+    if kind == attitude.TRANSVERSE:
+        nx, ny, nz = attitude.orbital_direction(ux, uy, uz, x, y, z, vx, vy, vz, 0.0, 1.0, 0.0)
         return nx, ny, nz, 0.0, 1.0
-    if kind == law.TABLE_ORBITAL or kind == law.TABLE_MERIDIAN:
-        alpha, delta, throttle = law.table_row(t, p, TABLE, int(p[ROWS]), p[INTERPOLATION])
+    if kind == attitude.TABLE_ORBITAL or kind == attitude.TABLE_MERIDIAN:
+        alpha, delta, throttle = attitude.table_row(
+            t, array_at(p.places.address, p.places.end), p.places.steering, p.table.rows, p.table.interpolation
+        )
         n_r, n_t, n_h = np.cos(alpha), np.sin(alpha) * np.sin(delta), np.sin(alpha) * np.cos(delta)
-        if kind == law.TABLE_MERIDIAN:
-            nx, ny, nz = law.meridian_direction(ux, uy, uz, n_r, n_t, n_h)
+        if kind == attitude.TABLE_MERIDIAN:
+            nx, ny, nz = attitude.meridian_direction(ux, uy, uz, n_r, n_t, n_h)
         else:
-            nx, ny, nz = law.orbital_direction(ux, uy, uz, x, y, z, vx, vy, vz, n_r, n_t, n_h)
+            nx, ny, nz = attitude.orbital_direction(ux, uy, uz, x, y, z, vx, vy, vz, n_r, n_t, n_h)
         return nx, ny, nz, n_r, throttle
     on = 1.0
-    if kind == law.INERTIAL:
-        nx, ny, nz = p[STEERING], p[STEERING + 1], p[STEERING + 2]
-    elif kind == law.TANGENTIAL:
+    if kind == attitude.INERTIAL:
+        nx, ny, nz = p.inertial.x, p.inertial.y, p.inertial.z
+    elif kind == attitude.TANGENTIAL:
         inverse = 1.0 / np.sqrt(vx * vx + vy * vy + vz * vz)
         nx, ny, nz = vx * inverse, vy * inverse, vz * inverse
-    elif kind == law.USER:
-        nx, ny, nz = user_vector(int(p[USER_STEERING]), t, x, y, z, vx, vy, vz, m)
+    elif kind == attitude.USER:
+        nx, ny, nz = user_vector(p.callbacks.user_steering, t, x, y, z, vx, vy, vz, m)
     else:
-        nx, ny, nz, on = plugged(int(p[PRIMER_LAW]), t, x, y, z, vx, vy, vz, m, p, 1.0)
+        nx, ny, nz, on = call(p.callbacks.steering, p.places.steering, t, x, y, z, vx, vy, vz, m, 0.0, 0.0, 0.0, p, 1.0)
     return nx, ny, nz, ux * nx + uy * ny + uz * nz, on
 
 
 @inlined
-def device_acceleration(t, x, y, z, vx, vy, vz, m, inverse, factor, model):
+def device_acceleration(t, x, y, z, vx, vy, vz, m, inverse, factor, p):
     """Acceleration of the device, m/s2 inertial, and m_dot, kg/s. factor multiplies both, and so does the throttle of
     the steering law; inverse = 1 / |position|. Not of a plasma brake."""
-    p = model.parameters
     ux, uy, uz = x * inverse, y * inverse, z * inverse
-    nx, ny, nz, c, throttle = direction(t, x, y, z, vx, vy, vz, m, ux, uy, uz, model)
+    nx, ny, nz, c, throttle = direction(t, x, y, z, vx, vy, vz, m, ux, uy, uz, p)
     factor = factor * throttle
-    kind = model.device
+    kind = p.kinds.device
+    if kind == CALLED:
+        return call(p.callbacks.device, p.places.device, t, x, y, z, vx, vy, vz, m, nx, ny, nz, p, factor)
     if kind == SOLAR_SAIL:
-        ax, ay, az = sail_force(
-            ux, uy, uz, inverse, nx, ny, nz, c, factor * p[DEVICE], p[DEVICE + 1], p[DEVICE + 2], p[DEVICE + 3]
-        )
+        sail = p.solar_sail
+        ax, ay, az = sail_force(ux, uy, uz, inverse, nx, ny, nz, c, factor * sail.strength, sail.b1, sail.b2, sail.b3)
         return ax, ay, az, 0.0
     if kind == ELECTRIC_SAIL:
-        ac, kind_of_sail, limit = factor * p[DEVICE], int(p[DEVICE + 1]), p[DEVICE + 2]
-        ax, ay, az = esail_force(ux, uy, uz, inverse, nx, ny, nz, c, ac, kind_of_sail, limit)
+        esail = p.electric_sail
+        ac = factor * esail.characteristic_acceleration
+        ax, ay, az = esail_force(ux, uy, uz, inverse, nx, ny, nz, c, ac, int(esail.model), esail.pitch_limit)
         return ax, ay, az, 0.0
-    return thruster_force(nx, ny, nz, m, factor * p[DEVICE], p[DEVICE + 1], p[DEVICE + 2])
-
-
-@inlined
-def third_body_gravity(t, x, y, z, p):
-    """Pull of a body on a circular orbit in the x-y plane, m/s2, the central body held fixed: the fall of the
-    central body towards the other, mu' / R'^2, is neglected (3e-6 of the Sun's pull for the Earth)."""
-    angle = p[THIRD_BODY + 3] + p[THIRD_BODY + 2] * t
-    dx, dy = p[THIRD_BODY + 1] * np.cos(angle) - x, p[THIRD_BODY + 1] * np.sin(angle) - y
-    d2 = dx * dx + dy * dy + z * z
-    k = p[THIRD_BODY] / (d2 * np.sqrt(d2))
-    return k * dx, k * dy, -k * z
-
-
-@inlined
-def exponential_air_drag(x, y, z, vx, vy, vz, m, r, p):
-    """Drag of an exponential atmosphere, m/s2."""
-    density = exponential(r, p[AIR + 2], p[AIR + 3], p[AIR + 4])
-    return air_drag(x, y, z, vx, vy, vz, p[ROTATION], density * p[AIR + 1] / m)
+    if kind == THRUSTER:
+        thruster = p.thruster
+        return thruster_force(nx, ny, nz, m, factor * thruster.size, thruster.is_force, thruster.inverse_exhaust)
+    return 0.0, 0.0, 0.0, 0.0  # never: but with a device for all others, or the call here, a sail costs 10 % more
 
 
 @called
-def derivative(t, y, factor, model, out):
-    """out (7,) = dy/dt: (2.1)-(2.3). factor multiplies the device's thrust; 0 is off."""
-    p = model.parameters
+def environment_forces(t, x, y, z, vx, vy, vz, m, factor, p):
+    """Acceleration, m/s2, of all forces that come as callbacks."""
+    tables = array_at(p.places.address, p.places.end)
+    ax, ay, az = 0.0, 0.0, 0.0
+    for i in range(p.callbacks.forces):
+        address, own = int(tables[p.places.forces + 2 * i]), int(tables[p.places.forces + 2 * i + 1])
+        bx, by, bz, _ = call(address, own, t, x, y, z, vx, vy, vz, m, 0.0, 0.0, 0.0, p, factor)
+        ax, ay, az = ax + bx, ay + by, az + bz
+    return ax, ay, az
+
+
+@called
+def derivative(t, y, factor, p, out):
+    """out (7,) = dy/dt: (2.1)-(2.3). factor multiplies the device's thrust; 0 is off. p : a record of PARAMETERS."""
     x, yy, z, vx, vy, vz, m = y[0], y[1], y[2], y[3], y[4], y[5], y[6]
     inverse = 1.0 / np.sqrt(x * x + yy * yy + z * z)
-    ax, ay, az = gravity(x, yy, z, inverse, p[MU], p[J2_STRENGTH], p[ZONAL], p[ZONAL + 1])
+    ax, ay, az = gravity(
+        x, yy, z, inverse, p.gravity.mu, p.gravity.j2_strength, p.gravity.j3_strength, p.gravity.j4_strength
+    )
     m_dot = 0.0
-    if p[THIRD_BODY] != 0.0:
-        bx, by, bz = third_body_gravity(t, x, yy, z, p)
+    if p.third_body.mu != 0.0:
+        bx, by, bz = third_body_gravity(t, x, yy, z, p.third_body)
         ax, ay, az = ax + bx, ay + by, az + bz
-    if p[AIR] == EXPONENTIAL_AIR:
-        bx, by, bz = exponential_air_drag(x, yy, z, vx, vy, vz, m, 1.0 / inverse, p)
+    if p.air.kind == atmosphere.EXPONENTIAL:
+        bx, by, bz = exponential_air_drag(x, yy, z, vx, vy, vz, m, 1.0 / inverse, p.surface.rotation, p.air)
         ax, ay, az = ax + bx, ay + by, az + bz
-    if p[LOW_ORBIT] != 0.0:
-        bx, by, bz, _ = plugged(int(p[LOW_ORBIT]), t, x, yy, z, vx, vy, vz, m, p, factor)
+    if p.callbacks.forces != 0:
+        bx, by, bz = environment_forces(t, x, yy, z, vx, vy, vz, m, factor, p)
         ax, ay, az = ax + bx, ay + by, az + bz
-    if factor != 0.0 and model.device != NO_DEVICE and model.device != PLASMA_BRAKE:
-        bx, by, bz, m_dot = device_acceleration(t, x, yy, z, vx, vy, vz, m, inverse, factor, model)
+    if factor != 0.0 and p.kinds.device != NO_DEVICE and p.kinds.device != PLASMA_BRAKE:
+        bx, by, bz, m_dot = device_acceleration(t, x, yy, z, vx, vy, vz, m, inverse, factor, p)
         ax, ay, az = ax + bx, ay + by, az + bz
-    if p[USER_FORCE] != 0.0:
-        bx, by, bz = user_vector(int(p[USER_FORCE]), t, x, yy, z, vx, vy, vz, m)
+    if p.callbacks.user_force != 0:
+        bx, by, bz = user_vector(p.callbacks.user_force, t, x, yy, z, vx, vy, vz, m)
         ax, ay, az = ax + bx, ay + by, az + bz
     out[0], out[1], out[2], out[3], out[4], out[5], out[6] = vx, vy, vz, ax, ay, az, m_dot
 
 
 @compiled
-def observe(time, states, factor, model):
-    """What the craft did at given states. time (n,), states (7, n), factor (n,) -> normal (n, 3), acceleration of
-    device (but not a plasma brake) and user force together (n, 3) m/s2, throttle of the steering law (n,)."""
+def observe_compiled(time, states, factor, parameters):
+    """`observe` in compiled code."""
     n = len(time)
-    p = model.parameters
+    p = parameters[0]
     normal, acceleration, on = np.zeros((n, 3)), np.zeros((n, 3)), np.ones(n)
     for i in range(n):
         t, x, y, z = time[i], states[0, i], states[1, i], states[2, i]
         vx, vy, vz, m = states[3, i], states[4, i], states[5, i], states[6, i]
         r = np.sqrt(x * x + y * y + z * z)
-        nx, ny, nz, _, on[i] = direction(t, x, y, z, vx, vy, vz, m, x / r, y / r, z / r, model)
+        nx, ny, nz, _, on[i] = direction(t, x, y, z, vx, vy, vz, m, x / r, y / r, z / r, p)
         ax, ay, az = 0.0, 0.0, 0.0
-        if factor[i] != 0.0 and model.device != NO_DEVICE and model.device != PLASMA_BRAKE:
-            ax, ay, az, _ = device_acceleration(t, x, y, z, vx, vy, vz, m, 1.0 / r, factor[i], model)
-        if p[USER_FORCE] != 0.0:
-            bx, by, bz = user_vector(int(p[USER_FORCE]), t, x, y, z, vx, vy, vz, m)
+        if factor[i] != 0.0 and p.kinds.device != NO_DEVICE and p.kinds.device != PLASMA_BRAKE:
+            ax, ay, az, _ = device_acceleration(t, x, y, z, vx, vy, vz, m, 1.0 / r, factor[i], p)
+        if p.callbacks.user_force != 0:
+            bx, by, bz = user_vector(p.callbacks.user_force, t, x, y, z, vx, vy, vz, m)
             ax, ay, az = ax + bx, ay + by, az + bz
         normal[i, 0], normal[i, 1], normal[i, 2] = nx, ny, nz
         acceleration[i, 0], acceleration[i, 1], acceleration[i, 2] = ax, ay, az
     return normal, acceleration, on
+
+
+def observe(
+    time: np.ndarray[Any, Any], states: np.ndarray[Any, Any], factor: np.ndarray[Any, Any], model: Model
+) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any], np.ndarray[Any, Any]]:
+    """What the craft did at given states. time (n,), states (7, n), factor (n,) -> normal (n, 3), acceleration of
+    device (but not a plasma brake) and user force together (n, 3) m/s2, throttle of the steering law (n,)."""
+    return observe_compiled(time, states, factor, model.parameters)

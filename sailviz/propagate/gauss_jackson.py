@@ -20,20 +20,37 @@ The step is ANGLE over the angular rate at periapsis. On low orbits with oblaten
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
-from llvmlite import ir
-from numba.core import types
-from numba.extending import intrinsic
 
-from sailviz.compiled import called, compiled, inlined
+from sailviz.compiled import compiled
 from sailviz.propagate import gauss_jackson_coefficients as c
 from sailviz.propagate.dop853 import attempt, interpolant, next_step, stages
-from sailviz.propagate.dynamics import DEVICE, MU, SIZE, SURFACE_RADIUS, THRUSTER, Model, derivative
-from sailviz.propagate.events import Watch, measure
+from sailviz.propagate.dynamics import SIZE, derivative, loses_mass
+from sailviz.propagate.events import Watch
 from sailviz.propagate.events import watch as no_events
 from sailviz.propagate.gauss_jackson_coefficients import LAGS
+from sailviz.propagate.gauss_jackson_steps import (
+    ANCHOR,
+    CHECK,
+    GRID_STEP,
+    HISTORY,
+    LONGEST,
+    MIDDLE_STATE,
+    NEWEST,
+    POINTS,
+    REFINEMENT,
+    SEAM_TOLERANCE,
+    SHORTEST,
+    SINCE,
+    SUBSTEPS,
+    Multistep,
+    begin_sums,
+    coast,
+    keep_acceleration,
+    quantum_of,
+    quintic,
+    step_rule,
+)
 from sailviz.propagate.stepping import (
     CLOCK,
     DENSE,
@@ -47,23 +64,26 @@ from sailviz.propagate.stepping import (
     INTERVAL,
     MOST_EVENTS,
     NEW,
-    ROW,
     STARTED,
     STATUS,
     STEP,
     STEPS,
-    STOPPED,
-    SURFACE,
     TIME,
     Integration,
     W,
     Y,
-    factor_from,
-    fill,
+    begin,
+    close_block,
     happenings,
+    next_limit,
+    open_block,
+    rows_until,
+    settle,
     surface_met,
 )
 from sailviz.propagate.stepping import NOT_FINITE as NOT_FINITE
+from sailviz.propagate.stepping import STOPPED as STOPPED
+from sailviz.propagate.stepping import SURFACE as SURFACE
 from sailviz.propagate.stepping import UNDERFLOW as UNDERFLOW
 from sailviz.propagate.stepping import drain_events as drain_events
 from sailviz.propagate.stepping import in_use as in_use
@@ -72,34 +92,6 @@ from sailviz.propagate.stepping import state as state
 from sailviz.propagate.stepping import statistics as statistics
 from sailviz.propagate.stepping import stopped_by as stopped_by
 from sailviz.propagate.stepping import time as time
-
-ANGLE = 0.067  # rad that the craft turns at periapsis in one step
-LONGEST, SHORTEST = 1.025, 0.8  # bounds of a step over what the rule says now; outside them it is chosen anew
-CHECK = 32  # steps between two looks at the rule
-LARGEST_ECCENTRICITY = 0.15  # beyond, and where other forces exceed STRONG of gravity, DOP853 makes the steps
-STRONG = 0.02
-DISTRUST = 1e-7  # a jump of the acceleration, over the acceleration, that is left to DOP853
-SEAM_TOLERANCE = 1e-14  # at most, of the DOP853 steps
-SUBSTEPS = 4  # of DOP853 between two points of a start, at least; a power of two, see _quantum
-
-# places in Integration.count after those that all integrators have
-NEWEST, POINTS, SINCE = 9, 10, 11  # row of history, accelerations in it, steps since ANCHOR
-# places in the row of numbers `grid`
-ANCHOR, GRID_STEP, REFINEMENT = 0, 1, 2
-FIRST_SUM, SECOND_SUM = 3, 9  # x, y, z and what rounding left of them
-MIDDLE_STATE = 15  # position and velocity at the middle of the points
-HISTORY = 512  # rows, of which the last LAGS count
-
-
-class Multistep(NamedTuple):
-    """Everything that an integration remembers between calls."""
-
-    work: np.ndarray  # the first four as in integration.Integration
-    count: np.ndarray
-    sign: np.ndarray
-    event: np.ndarray
-    history: np.ndarray  # (HISTORY, 4) m/s2, accelerations at equal steps, oldest first, the fourth column 0
-    grid: np.ndarray  # (21,) see the places above
 
 
 def start(t, position, velocity, mass, events=0, refinement=1.0) -> Multistep:
@@ -116,321 +108,59 @@ def start(t, position, velocity, mass, events=0, refinement=1.0) -> Multistep:
     return Multistep(work, count, np.zeros(events), event, np.zeros((HISTORY, 4)), grid)
 
 
-@intrinsic
-def _weighted_sums(typing, history, newest):
-    """The twelve sums over the accelerations up to row newest that a step needs: x, y, z of POSITION, VELOCITY,
-    EXTRAPOLATION, POSITION_OTHERS. Written as vectors of four, which the compiler does not find by itself."""
-
-    def generate(context, builder, signature, arguments):
-        array = context.make_array(signature.args[0])(context, builder, arguments[0])
-        real, word, vector = ir.DoubleType(), ir.IntType(64), ir.VectorType(ir.DoubleType(), 4)
-        tables = (c.POSITION, c.VELOCITY, c.EXTRAPOLATION, c.POSITION_OTHERS)
-        sums = [ir.Constant(vector, [0.0] * 4)] * len(tables)
-        for lag in range(LAGS - 1, -1, -1):
-            place = builder.mul(builder.sub(arguments[1], ir.Constant(word, lag)), ir.Constant(word, 4))
-            row = builder.bitcast(builder.gep(array.data, [place], source_etype=real), vector.as_pointer())
-            acceleration = builder.load(row, typ=vector)
-            acceleration.align = 8
-            for i, table in enumerate(tables):
-                product = builder.fmul(acceleration, ir.Constant(vector, [table[lag]] * 4), flags=("contract",))
-                sums[i] = builder.fadd(sums[i], product, flags=("contract",))
-        parts = [builder.extract_element(s, ir.Constant(ir.IntType(32), j)) for s in sums for j in range(3)]
-        return context.make_tuple(builder, signature.return_type, parts)
-
-    return types.UniTuple(types.float64, 12)(history, types.int64), generate
-
-
-@intrinsic
-def _product_left(typing, a, b, product):
-    """a b - product without rounding in between."""
-
-    def generate(context, builder, signature, arguments):
-        return builder.fma(arguments[0], arguments[1], builder.fneg(arguments[2]))
-
-    return types.float64(types.float64, types.float64, types.float64), generate
-
-
-@inlined
-def _two_sum(a, b):
-    """a + b and what rounding left of it (Knuth)."""
-    s = a + b
-    d = s - a
-    return s, (a - (s - d)) + (b - d)
-
-
-@inlined
-def _angular_rate(y, mu):
-    """(angular rate at the periapsis of the osculating orbit in rad/s, its eccentricity)."""
-    r = np.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
-    hx, hy, hz = y[1] * y[5] - y[2] * y[4], y[2] * y[3] - y[0] * y[5], y[0] * y[4] - y[1] * y[3]
-    p = (hx * hx + hy * hy + hz * hz) / mu
-    v2 = y[3] * y[3] + y[4] * y[4] + y[5] * y[5]
-    e = np.sqrt(max(0.0, 1.0 + p * (v2 / mu - 2.0 / r)))
-    return np.sqrt(mu / (p * p * p)) * (1.0 + e) ** 2, e
-
-
-@called
-def _rule(y, f, mu, refinement, largest_step):
-    """(whether the multistep method suits the orbit, the step it should take in s). f = derivative at y."""
-    rate, e = _angular_rate(y, mu)
-    r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
-    k = mu / (r2 * np.sqrt(r2))
-    bx, by, bz = f[3] + k * y[0], f[4] + k * y[1], f[5] + k * y[2]
-    other = (bx * bx + by * by + bz * bz) * r2 * r2 / (mu * mu)  # of all forces but the central one, squared
-    suits = e < LARGEST_ECCENTRICITY and other < STRONG * STRONG
-    return suits, min(ANGLE / refinement / rate, largest_step)
-
-
-@inlined
-def _quantum(h):
-    """The power of two of which a step of about h, and the time it starts from, are made multiples: then all times of
-    the method are exact, and so is the square of the step. Rounding the points of a start by 1e-9 s, what a time of a
-    year resolves, would cost 1e-7 of the radius."""
-    return 2.0 ** (np.floor(np.log2(h)) - 19.0)
-
-
-@inlined
-def _keep(history, count, f):
-    """Put the acceleration in f (7,) behind the others."""
-    newest = count[NEWEST] + 1
-    if count[POINTS] == 0:
-        newest = 0
-    elif newest == HISTORY:
-        for i in range(LAGS):
-            for j in range(3):
-                history[i, j] = history[HISTORY - LAGS + i, j]
-        newest = LAGS
-    for j in range(3):
-        history[newest, j] = f[3 + j]
-    count[NEWEST] = newest
-    count[POINTS] += 1
-
-
-@called
-def _begin_sums(history, newest, grid):
-    """The two sums that make the correctors give the state kept at the middle of the points, carried to the newest."""
-    h = grid[GRID_STEP]
-    for j in range(3):
-        p = v = 0.0
-        for i in range(LAGS):
-            p += c.POSITION_START[i] * history[newest - i, j]
-            v += c.VELOCITY_START[i] * history[newest - i, j]
-        first, first_left = _two_sum(grid[MIDDLE_STATE + 3 + j] / h, -v)
-        second, second_left = _two_sum(grid[MIDDLE_STATE + j] / (h * h), -p)  # still of the point before the middle
-        for i in range(c.MIDDLE, -1, -1):
-            if i < c.MIDDLE:
-                first, left = _two_sum(first, history[newest - i, j])
-                first_left += left
-            second, left = _two_sum(second, first)
-            second_left += left + first_left
-        grid[FIRST_SUM + j], grid[FIRST_SUM + 3 + j] = first, first_left
-        grid[SECOND_SUM + j], grid[SECOND_SUM + 3 + j] = second, second_left
-
-
-@inlined
-def _quintic(y, f, new, g, h, m):
-    """m (8, SIZE): the polynomial of the step from state y with derivative f to new with g."""
-    for j in range(3):
-        v0, v1 = h * y[3 + j], h * new[3 + j]
-        a0, a1 = h * h * f[3 + j], h * h * g[3 + j]
-        d, dv, da = new[j] - y[j] - v0 - 0.5 * a0, v1 - v0 - a0, a1 - a0
-        c3, c4, c5 = 10.0 * d - 4.0 * dv + 0.5 * da, 7.0 * dv - 15.0 * d - da, 6.0 * d - 3.0 * dv + 0.5 * da
-        m[0, j], m[1, j], m[2, j], m[3, j], m[4, j], m[5, j] = y[j], v0, 0.5 * a0, c3, c4, c5
-        m[0, 3 + j], m[1, 3 + j], m[2, 3 + j] = y[3 + j], h * f[3 + j], 3.0 * c3 / h
-        m[3, 3 + j], m[4, 3 + j], m[5, 3 + j] = 4.0 * c4 / h, 5.0 * c5 / h, 0.0
-    for j in range(SIZE):
-        m[6, j] = m[7, j] = 0.0
-    for i in range(1, 6):
-        m[i, 6] = 0.0
-    m[0, 6] = y[6]
-
-
-@inlined
-def _coast(s, history, grid, watch, row_time, limit, factor, perturbations, near, mu):
-    """Steps up to the one that contains row_time, in which something watched may happen, after which the rule is due,
-    or that would come too near to limit. Leaves in s.work: Y and k[0], state and derivative at the start of the last
-    step, NEW and k[12] at its end. Returns the steps made; none where the acceleration jumps at the first."""
-    k, count = s.work, s.count
-    w, f = k[W], k[12]
-    newest, since = count[NEWEST], count[SINCE]
-    anchor, h = grid[ANCHOR], grid[GRID_STEP]
-    h2 = h * h
-    new = h2 * (c.POSITION_NEW + c.POSITION_NEW_LEFT)
-    s1x, s1y, s1z = grid[FIRST_SUM], grid[FIRST_SUM + 1], grid[FIRST_SUM + 2]
-    l1x, l1y, l1z = grid[FIRST_SUM + 3], grid[FIRST_SUM + 4], grid[FIRST_SUM + 5]
-    s2x, s2y, s2z = grid[SECOND_SUM], grid[SECOND_SUM + 1], grid[SECOND_SUM + 2]
-    l2x, l2y, l2z = grid[SECOND_SUM + 3], grid[SECOND_SUM + 4], grid[SECOND_SUM + 5]
-    if since % CHECK == 0:  # what the small parts have gathered
-        s1x, l1x = _two_sum(s1x, l1x)
-        s1y, l1y = _two_sum(s1y, l1y)
-        s1z, l1z = _two_sum(s1z, l1z)
-        s2x, l2x = _two_sum(s2x, l2x)
-        s2y, l2y = _two_sum(s2y, l2y)
-        s2z, l2z = _two_sum(s2z, l2z)
-    x0, y0, z0, u0, v0, w0 = k[Y, 0], k[Y, 1], k[Y, 2], k[Y, 3], k[Y, 4], k[Y, 5]
-    x, y, z, u, v, ww = x0, y0, z0, u0, v0, w0
-    ax, ay, az = k[0, 3], k[0, 4], k[0, 5]
-    bx, by, bz = ax, ay, az
-    w[6] = k[Y, 6]
-    made = 0
-    watched = len(watch.kind)
-    first = since
-    while True:
-        t = anchor + (since + 1) * h
-        if t > limit:
-            break
-        px, py, pz, qx, qy, qz, ex, ey, ez, ox, oy, oz = _weighted_sums(history, newest)
-        # position, and what rounding leaves of it
-        mx, rx = _two_sum(s2x, l2x + px)
-        my, ry = _two_sum(s2y, l2y + py)
-        mz, rz = _two_sum(s2z, l2z + pz)
-        ox += c.POSITION_SECOND_LEFT * history[newest, 0] - px
-        oy += c.POSITION_SECOND_LEFT * history[newest, 1] - py
-        oz += c.POSITION_SECOND_LEFT * history[newest, 2] - pz
-        px, py, pz = h2 * mx, h2 * my, h2 * mz
-        ox, oy, oz = h2 * (ox + rx), h2 * (oy + ry), h2 * (oz + rz)
-        ox += _product_left(h2, mx, px)
-        oy += _product_left(h2, my, py)
-        oz += _product_left(h2, mz, pz)
-        qx, qy, qz = h * (s1x + (l1x + qx)), h * (s1y + (l1y + qy)), h * (s1z + (l1z + qz))
-        w[0], w[1], w[2], w[3], w[4], w[5] = px, py, pz, qx, qy, qz
-        inverse2 = 1.0 / (px * px + py * py + pz * pz)
-        attraction = mu * inverse2 * np.sqrt(inverse2)
-        derivative(t, w, factor, perturbations, f)
-        tx, ty, tz = attraction * px, attraction * py, attraction * pz
-        cx, cy, cz = f[3] - tx, f[4] - ty, f[5] - tz
-        dx, dy, dz = cx - ex, cy - ey, cz - ez
-        if not (dx * dx + dy * dy + dz * dz <= DISTRUST * DISTRUST * (cx * cx + cy * cy + cz * cz)):
-            break
-        x0, y0, z0, u0, v0, w0, ax, ay, az = x, y, z, u, v, ww, bx, by, bz
-        gx, gy, gz = ox + new * cx, oy + new * cy, oz + new * cz
-        x, y, z = px + gx, py + gy, pz + gz
-        u = qx + h * c.VELOCITY_CORRECTION * dx
-        v = qy + h * c.VELOCITY_CORRECTION * dy
-        ww = qz + h * c.VELOCITY_CORRECTION * dz
-        along = 3.0 * (px * gx + py * gy + pz * gz) * inverse2
-        fx, fy, fz = attraction * (gx - along * px), attraction * (gy - along * py), attraction * (gz - along * pz)
-        bx, by, bz = cx - fx, cy - fy, cz - fz
-        # everything beside the attraction rounded to a double, for the sums
-        fx = f[3] - _product_left(attraction, px, tx) - fx
-        fy = f[4] - _product_left(attraction, py, ty) - fy
-        fz = f[5] - _product_left(attraction, pz, tz) - fz
-        newest += 1
-        if newest == HISTORY:
-            for i in range(LAGS):
-                for j in range(3):
-                    history[i, j] = history[HISTORY - LAGS + i, j]
-            newest = LAGS
-        history[newest, 0], history[newest, 1], history[newest, 2] = bx, by, bz
-        s1x, e1 = _two_sum(s1x, -tx)
-        s1y, e2 = _two_sum(s1y, -ty)
-        s1z, e3 = _two_sum(s1z, -tz)
-        l1x, l1y, l1z = l1x + (e1 + fx), l1y + (e2 + fy), l1z + (e3 + fz)
-        s2x, e1 = _two_sum(s2x, s1x)
-        s2y, e2 = _two_sum(s2y, s1y)
-        s2z, e3 = _two_sum(s2z, s1z)
-        l2x, l2y, l2z = l2x + (e1 + l1x), l2y + (e2 + l1y), l2z + (e3 + l1z)
-        since += 1
-        made += 1
-        stop = t >= row_time or since % CHECK == 0 or x * x + y * y + z * z < near
-        if watched > 0:
-            w[0], w[1], w[2], w[3], w[4], w[5] = x, y, z, u, v, ww
-            for e in range(watched):
-                now = measure(watch.kind[e], watch.level[e], w, mu)
-                stop = stop or s.sign[e] == 0.0 or (now < 0.0) != (s.sign[e] < 0.0)
-        if stop:
-            break
-    if since > first:
-        k[Y, 0], k[Y, 1], k[Y, 2], k[Y, 3], k[Y, 4], k[Y, 5] = x0, y0, z0, u0, v0, w0
-        k[0, 0], k[0, 1], k[0, 2], k[0, 3], k[0, 4], k[0, 5], k[0, 6] = u0, v0, w0, ax, ay, az, 0.0
-        k[NEW, 0], k[NEW, 1], k[NEW, 2], k[NEW, 3], k[NEW, 4], k[NEW, 5], k[NEW, 6] = x, y, z, u, v, ww, k[Y, 6]
-        f[0], f[1], f[2], f[3], f[4], f[5], f[6] = u, v, ww, bx, by, bz, 0.0
-        grid[FIRST_SUM], grid[FIRST_SUM + 1], grid[FIRST_SUM + 2] = s1x, s1y, s1z
-        grid[FIRST_SUM + 3], grid[FIRST_SUM + 4], grid[FIRST_SUM + 5] = l1x, l1y, l1z
-        grid[SECOND_SUM], grid[SECOND_SUM + 1], grid[SECOND_SUM + 2] = s2x, s2y, s2z
-        grid[SECOND_SUM + 3], grid[SECOND_SUM + 4], grid[SECOND_SUM + 5] = l2x, l2y, l2z
-        count[NEWEST], count[SINCE] = newest, since
-    return made
-
-
 def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step) -> int:
     """Integrate until every row of the block is filled, or until something ends the run: as dop853.advance, in every
     argument and status. tolerance : of the DOP853 steps, which take 1e-14 at most. ValueError for a thruster that
     loses mass."""
-    if model.device == THRUSTER and model.parameters[DEVICE + 2] != 0.0:
+    if loses_mass(model):
         raise ValueError(
             "the Gauss-Jackson integrator keeps the mass constant; a thruster with a specific impulse does not."
         )
     return advance_compiled(
-        *s, *model, breaks, factors, *watch, t_out, out, float(t_end), float(tolerance), float(largest_step)
+        *s, model.parameters, breaks, factors, *watch, t_out, out, float(t_end), float(tolerance), float(largest_step)
     )
 
 
 @compiled
 def advance_compiled(
-    work, count, sign, event, history, grid, device, steering, parameters, breaks, factors,
+    work, count, sign, event, history, grid, parameters, breaks, factors,
     kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step,
 ):  # fmt: skip
     """`advance` with its tuples taken apart."""
     s = Integration(work, count, sign, event)
-    model = Model(device, steering, parameters)
+    p = parameters[0]
     others = parameters.copy()
-    others[MU] = 0.0
-    perturbations = Model(device, steering, others)  # all but the central attraction
+    others[0].gravity.mu = 0.0
+    perturbations = others[0]  # all but the central attraction
     watch = Watch(kinds, levels, senses, actions)
-    n, components = t_out.shape[0], out.shape[0]
-    mu, surface = model.parameters[MU], model.parameters[SURFACE_RADIUS]
+    n = t_out.shape[0]
+    mu, surface = p.gravity.mu, p.surface.radius
     k, m, clock = work, work[DENSE:CLOCK], work[CLOCK]
     y, w, new = k[Y], k[W], k[NEW]
     watched = len(watch.kind)
     tolerance = min(tolerance, SEAM_TOLERANCE)
     if count[STARTED] == 0:
-        count[STARTED] = 1
-        while count[INTERVAL] + 1 < len(breaks) and breaks[count[INTERVAL] + 1] <= clock[TIME]:
-            count[INTERVAL] += 1
-        factor_from(clock[TIME], y, factors, count[INTERVAL], model)
-        derivative(clock[TIME], y, factors[count[INTERVAL]], model, k[0])
-        clock[STEP] = _rule(y, k[0], mu, grid[REFINEMENT], largest_step)[1]
-        for e in range(watched):
-            s.sign[e] = measure(watch.kind[e], watch.level[e], y, mu)
-    row = 0
-    if count[STATUS] == EVENTS_FULL:
-        row = count[ROW]
-    ended = count[STATUS] == STOPPED or count[STATUS] == SURFACE  # in a step of which rows are still to be filled
-    if not ended:
-        count[STATUS] = DONE
-    t = clock[TIME]
-    interval = count[INTERVAL]
+        begin(s, watch, breaks, factors, p)
+        derivative(clock[TIME], y, factors[count[INTERVAL]], p, k[0])
+        clock[STEP] = step_rule(y, k[0], mu, grid[REFINEMENT], largest_step)[1]
+    row, ended = open_block(count)
+    t, interval = clock[TIME], count[INTERVAL]
     factor = factors[interval] * count[IN_USE]
-    while row < n:
-        # rows inside the last step, or exactly at its end
-        if t_out[row] < t:
-            last = row + 1
-            while last < n and t_out[last] < t:
-                last += 1
-            fill(m, clock[DENSE_START], clock[DENSE_STEP], t_out, out, row, last)
-            row = last
-            continue
-        if t_out[row] == t:
-            for j in range(components):
-                out[j, row] = y[j]
-            row += 1
-            continue
-        if ended:
+    while True:
+        row = rows_until(t, s, t_out, out, row, 1)
+        if row >= n or ended:
             break
         if count[EVENTS] > MOST_EVENTS:
             count[STATUS] = EVENTS_FULL
             break
-        limit = t_end
-        if interval + 1 < len(breaks) and breaks[interval + 1] < limit:
-            limit = breaks[interval + 1]
+        limit = next_limit(breaks, interval, t_end)
 
         made = 0
         if count[POINTS] >= LAGS:
             h = grid[GRID_STEP]
             # a periapsis between two steps is deeper than both by less than g h^2 / 8
             deep = surface + 0.2 * mu / (surface * surface) * h * h if surface > 0.0 else 0.0
-            made = _coast(
+            made = coast(
                 s, history, grid, watch, t_out[row], limit - 0.01 * h, factor, perturbations, deep * deep, mu
             )  # fmt: skip
             if made == 0:
@@ -443,19 +173,19 @@ def advance_compiled(
         else:
             target, aim = limit, largest_step
             if count[POINTS] == 0:
-                suits, h = _rule(y, k[0], mu, grid[REFINEMENT], largest_step)
+                suits, h = step_rule(y, k[0], mu, grid[REFINEMENT], largest_step)
                 # not worth its start before a kink that is near
                 if suits and limit - t > 2 * LAGS * h:
-                    quantum = _quantum(h)
+                    quantum = quantum_of(h)
                     target = np.ceil(t / quantum) * quantum
                     if target == t:
                         grid[ANCHOR], grid[GRID_STEP], count[SINCE] = t, np.floor(h / quantum) * quantum, 0
-                        _keep(history, count, k[0])
+                        keep_acceleration(history, count, k[0])
             if count[POINTS] > 0:
                 target = grid[ANCHOR] + (count[SINCE] + 1) * grid[GRID_STEP]
                 aim = grid[GRID_STEP] / SUBSTEPS  # an error of the energy in the start counts for the whole run
             h, landing, rejected, wish, error = attempt(
-                t, target, clock[STEP], aim, t_end, tolerance, factor, model, k, count, mu
+                t, target, clock[STEP], aim, t_end, tolerance, factor, p, k, count, mu
             )
             if count[STATUS] != DONE:
                 break
@@ -468,54 +198,38 @@ def advance_compiled(
                 count[POINTS] = 0  # something was in the way: begin after it
             elif count[POINTS] > 0 and landing:
                 count[SINCE] += 1
-                _keep(history, count, k[12])
+                keep_acceleration(history, count, k[12])
                 if count[POINTS] == LAGS - c.MIDDLE:
                     for j in range(6):
                         grid[MIDDLE_STATE + j] = new[j]
                 if count[POINTS] == LAGS:
-                    _begin_sums(history, count[NEWEST], grid)
+                    begin_sums(history, count[NEWEST], grid)
 
         touched, passed = surface_met(y, new, mu, surface)
         clock[DENSE_START], clock[DENSE_STEP] = t0, t - t0
         if watched > 0 or touched or passed or t_out[row] < t:
             if made > 0:
-                _quintic(y, k[0], new, k[12], h, m)
+                quintic(y, k[0], new, k[12], h, m)
             else:
-                interpolant(t0, h, factor, model, k, m)
+                interpolant(t0, h, factor, p, k, m)
         stop_x = 2.0
         if watched > 0 or touched or passed:
             stop_x = happenings(s, watch, t0, h, touched, passed, samples, mu, surface, new, w)
         if stop_x < 2.0:
             t = t0 + stop_x * h
             if made > 0 and count[STATUS] == DONE:  # the run goes on from here: better than the quintic's velocity
-                stages(t0, stop_x * h, t, factor, model, k)
-        new_factor = factor
-        if t == limit and limit < t_end and interval + 1 < len(breaks):
-            interval += 1
-            new_factor = factor_from(t, new, factors, interval, model)
-        new_factor = new_factor * count[IN_USE]
-        if stop_x < 2.0 or new_factor != factor or (t == limit and limit < t_end):
-            factor = new_factor
-            derivative(t, new, factor, model, k[0])
+                stages(t0, stop_x * h, t, factor, p, k)
+        interval, factor, jumps = settle(s, breaks, factors, p, t, limit, t_end, stop_x < 2.0, interval, factor)
+        if jumps:
+            derivative(t, y, factor, p, k[0])
             count[POINTS] = 0
-        else:
-            for j in range(SIZE):
-                k[0, j] = k[12, j]
-        for j in range(SIZE):
-            y[j] = new[j]
         if made > 0 and count[SINCE] % CHECK == 0 and count[POINTS] > 0:
-            suits, wanted = _rule(y, k[0], mu, grid[REFINEMENT], largest_step)
+            suits, wanted = step_rule(y, k[0], mu, grid[REFINEMENT], largest_step)
             if not suits or grid[GRID_STEP] > LONGEST * wanted or grid[GRID_STEP] < SHORTEST * wanted:
                 count[POINTS] = 0
                 clock[STEP] = wanted
-        clock[TIME], count[INTERVAL] = t, interval
-        if count[STATUS] != DONE:
-            ended = True
-    count[ROW] = row
-    clock[TIME], count[INTERVAL] = t, interval
-    if ended and row == n and n > 0 and t_out[n - 1] < t:
-        return DONE  # the next block may have rows before the end
-    return count[STATUS]
+        ended = count[STATUS] != DONE
+    return close_block(s, t_out, row, ended)
 
 
 def step(s: Multistep) -> float:

@@ -1,84 +1,86 @@
 """What a low orbit adds to the right-hand side: the Sun and the shadow, tabled air, plasma, and the brake that uses it.
 
-A plug: compiled when the first scene needs it.
+A callback: compiled when the first scene needs it.
 """
 
 from __future__ import annotations
 
-import numba
 import numpy as np
+from numba import carray
 
-from sailviz.compiled import called, compiled
+from sailviz.compiled import STATE, called, compiled
 from sailviz.constants import ELEMENTARY_CHARGE, MU_EARTH, ROTATION_EARTH
-from sailviz.environment import atmosphere, magnetic, sun
-from sailviz.environment import ionosphere as plasma
+from sailviz.environment import atmosphere, ionosphere, magnetic, sun
 from sailviz.environment.eclipse import NO_SHADOW, sunlit
 from sailviz.environment.gravity import geodetic_altitude
 from sailviz.environment.solar_level import flux
-from sailviz.propagate import parameters as at
-from sailviz.propagate.callbacks import plug_address
+from sailviz.propagate.callbacks import Callback, callback
+from sailviz.propagate.parameters import array_at
 from sailviz.propulsion.plasma_brake import (
+    NEGATIVE,
+    SPINNING,
+    TILTED,
     limited_voltage,
     negative_force_per_length,
     positive_force_per_length,
     tether_current,
 )
 
-TABLE_PROFILE = 2  # of the plasma, beside the exponential profiles of environment.ionosphere
-
 
 @called
 def surroundings(t, x, y, z, r, p):
     """(latitude rad, local time rad from midnight, altitude m, solar flux sfu, sunlit share) of a place, for what
     depends on them."""
-    altitude = r - p[at.SURFACE_RADIUS]
-    if p[at.HEIGHT] != 0.0:
+    altitude = r - p.surface.radius
+    if p.surface.ellipsoid != 0:
         altitude = geodetic_altitude(z, r)
     latitude, local_time, f107, light = 0.0, 0.0, 0.0, 1.0
-    if p[at.PLASMA] == TABLE_PROFILE or p[at.AIR] == at.TABLED_AIR:
+    if p.plasma.kind == ionosphere.TABLE_PROFILE or p.air.kind == atmosphere.TABLED:
         latitude = np.arcsin(z / r)
-        local_time = sun.local_time(t, x, y, p, at.SUN)
-        f107 = flux(t, p, at.FLUX)
-    if p[at.SHADOW] != NO_SHADOW:
-        sx, sy, sz = sun.direction(t, p, at.SUN)
-        light = sunlit(p[at.SHADOW], x, y, z, sx, sy, sz, p[at.SURFACE_RADIUS])
+        local_time = sun.local_time(t, x, y, p.sun)
+        f107 = flux(t, p.solar_level)
+    if p.surface.shadow != NO_SHADOW:
+        sx, sy, sz = sun.direction(t, p.sun)
+        light = sunlit(p.surface.shadow, x, y, z, sx, sy, sz, p.surface.radius)
     return latitude, local_time, altitude, f107, light
 
 
 @called
-def air_density(r, latitude, local_time, altitude, f107, p):
+def air_density(r, latitude, local_time, altitude, f107, p, tables):
     """Mass density of the air, kg/m3."""
-    if p[at.AIR] == at.TABLED_AIR:
-        return atmosphere.lookup(p, int(p[at.AIR_TABLE]), latitude, local_time, altitude, f107)
-    return plasma.exponential(r, p[at.AIR + 2], p[at.AIR + 3], p[at.AIR + 4])
+    if p.air.kind == atmosphere.TABLED:
+        return atmosphere.lookup(tables, p.places.air, latitude, local_time, altitude, f107)
+    return ionosphere.exponential(r, p.air.reference_radius, p.air.density, p.air.scale_height)
 
 
 @called
-def plasma_at(r, latitude, local_time, altitude, f107, p):
+def plasma_at(r, latitude, local_time, altitude, f107, p, tables):
     """(density 1/m3, mean ion mass kg) of the plasma; of a given force profile (force per length N/m, 0)."""
-    if p[at.PLASMA] == TABLE_PROFILE:
-        n, mass = plasma.lookup(p, int(p[at.PLASMA_TABLE]), latitude, local_time, altitude, f107)
-        return n * p[at.DENSITY_FACTOR], mass
-    value = plasma.exponential(r - p[at.PLASMA + 5], p[at.PLASMA + 1], p[at.PLASMA + 2], p[at.PLASMA + 3])
-    return value * p[at.DENSITY_FACTOR], p[at.PLASMA + 4]
+    plasma = p.plasma
+    if plasma.kind == ionosphere.TABLE_PROFILE:
+        n, mass = ionosphere.lookup(tables, p.places.plasma, latitude, local_time, altitude, f107)
+        return n * plasma.density_factor, mass
+    height = r - plasma.surface_radius
+    value = ionosphere.exponential(height, plasma.reference_altitude, plasma.value, plasma.scale_height)
+    return value * plasma.density_factor, plasma.ion_mass
 
 
 @called
 def power_drawn(density, ion_mass, speed, voltage, p):
     """Power, W, that the supply needs to hold the tether at |V|."""
-    current = tether_current(density, ion_mass, speed, voltage, p[at.LENGTH], p[at.WIRE_DIAMETER], p[at.POLARITY])
-    return voltage * current / p[at.EFFICIENCY]
+    current = tether_current(density, ion_mass, speed, voltage, p.brake.length, p.brake.wire_diameter, p.brake.polarity)
+    return voltage * current / p.brake.efficiency
 
 
 @called
 def applied_voltage(density, ion_mass, speed, light, p):
     """|V| that the power allows, V: full, or what the power in sunlight or in the shadow supports."""
-    power = p[at.POWER] if light > 0.5 else p[at.ECLIPSE_POWER]
+    power = p.brake.power if light > 0.5 else p.brake.eclipse_power
     if power == np.inf:
-        return p[at.VOLTAGE]
+        return p.brake.voltage
     if power == 0.0:
         return 0.0
-    voltage = p[at.VOLTAGE]
+    voltage = p.brake.voltage
     drawn = power_drawn(density, ion_mass, speed, voltage, p)
     if drawn <= power:
         return voltage
@@ -91,13 +93,13 @@ def applied_voltage(density, ion_mass, speed, light, p):
 @called
 def per_length(density, ion_mass, speed, voltage, p):
     """Force on a metre of tether across the flow, N/m; density is that force itself for a given force profile."""
-    if p[at.PLASMA] == plasma.FORCE_PROFILE:
+    if p.plasma.kind == ionosphere.FORCE_PROFILE:
         return density * (voltage > 0.0)
     if voltage * 2.0 * ELEMENTARY_CHARGE <= ion_mass * speed * speed:
         return 0.0  # below the ram energy hardly an ion is turned back, and a weak sheath has no width
-    if p[at.POLARITY] != 0.0:
+    if p.brake.polarity != NEGATIVE:
         return positive_force_per_length(density, ion_mass, speed, voltage)
-    return negative_force_per_length(density, ion_mass, speed, voltage, p[at.WIRE_RADIUS])
+    return negative_force_per_length(density, ion_mass, speed, voltage, p.brake.wire_radius)
 
 
 @called
@@ -107,22 +109,22 @@ def brake_force(t, x, y, z, vx, vy, vz, r, density, ion_mass, light, p):
     Drag opposes the component of the plasma-relative velocity across the tether; the plasma turns with the body. A
     tilted tether leans as far as the drag on a vertical one would push it.
     """
-    w = p[at.ROTATION]
+    w = p.surface.rotation
     qx, qy, qz = vx + w * y, vy - w * x, vz
     sx, sy, sz = x / r, y / r, z / r
     speed = np.sqrt(qx * qx + qy * qy + qz * qz)
     voltage = applied_voltage(density, ion_mass, speed, light, p)
     factor = 1.0
-    if p[at.ATTITUDE] == at.SPINNING:
-        factor = p[at.SPIN_FACTOR]  # the mean over a turn acts against the whole flow
+    if p.brake.attitude == SPINNING:
+        factor = p.brake.spin_factor  # the mean over a turn acts against the whole flow
         along = 0.0
     else:
         along = qx * sx + qy * sy + qz * sz
-    if p[at.ATTITUDE] == at.TILTED:
+    if p.brake.attitude == TILTED:
         hx, hy, hz = qx - along * sx, qy - along * sy, qz - along * sz
         across = np.sqrt(hx * hx + hy * hy + hz * hz)
         push = per_length(density, ion_mass, across, voltage, p)
-        tangent = push * r * r * r / (6.0 * MU_EARTH * p[at.TIP])
+        tangent = push * r * r * r / (6.0 * MU_EARTH * p.brake.tip_mass)
         c = 1.0 / np.sqrt(1.0 + tangent * tangent)
         k = c * tangent / across
         sx, sy, sz = c * sx + k * hx, c * sy + k * hy, c * sz + k * hz
@@ -130,34 +132,35 @@ def brake_force(t, x, y, z, vx, vy, vz, r, density, ion_mass, light, p):
     qx, qy, qz = qx - along * sx, qy - along * sy, qz - along * sz
     across = np.sqrt(qx * qx + qy * qy + qz * qz)
     force = factor * per_length(density, ion_mass, across, voltage, p)
-    if p[at.MAGNETIC] != 0.0:
-        angle = p[at.EARTH_ANGLE] + ROTATION_EARTH * t
-        force *= 1.0 - p[at.MAGNETIC] * magnetic.alignment(x, y, z, 1.0 / r, angle, sx, sy, sz)
-    k = -force * p[at.LENGTH] / across
+    if p.brake.magnetic_sensitivity != 0.0:
+        angle = p.brake.earth_angle + ROTATION_EARTH * t
+        force *= 1.0 - p.brake.magnetic_sensitivity * magnetic.alignment(x, y, z, 1.0 / r, angle, sx, sy, sz)
+    k = -force * p.brake.length / across
     return k * qx, k * qy, k * qz, force, sx, sy, sz, voltage
 
 
-def _acceleration(t, state, row, size, factor, out):
-    """Plug: acceleration, m/s2, of tabled air and of the brake. They share what they need to know of the place."""
-    y, p, a = numba.carray(state, (7,)), numba.carray(row, (size,)), numba.carray(out, (4,))
+def _acceleration(t, state, parameters, own, factor, out):
+    """Acceleration, m/s2, of tabled air and of the brake. They share what they need to know of the place."""
+    p = carray(parameters, (1,))[0]
+    y, tables, a = carray(state, (STATE,)), array_at(p.places.address, p.places.end), carray(out, (4,))
     x, yy, z, vx, vy, vz, m = y[0], y[1], y[2], y[3], y[4], y[5], y[6]
     r = np.sqrt(x * x + yy * yy + z * z)
     latitude, local_time, altitude, f107, light = surroundings(t, x, yy, z, r, p)
     ax, ay, az = 0.0, 0.0, 0.0
-    if p[at.AIR] == at.TABLED_AIR:
-        k = air_density(r, latitude, local_time, altitude, f107, p) * p[at.AIR + 1] / m
-        ax, ay, az = atmosphere.air_drag(x, yy, z, vx, vy, vz, p[at.ROTATION], k)
-    if factor != 0.0 and p[at.PLASMA_ON] != 0.0:
-        n, ion_mass = plasma_at(r, latitude, local_time, altitude, f107, p)
+    if p.air.kind == atmosphere.TABLED:
+        k = air_density(r, latitude, local_time, altitude, f107, p, tables) * p.air.drag_area / m
+        ax, ay, az = atmosphere.air_drag(x, yy, z, vx, vy, vz, p.surface.rotation, k)
+    if factor != 0.0 and p.brake.present != 0:
+        n, ion_mass = plasma_at(r, latitude, local_time, altitude, f107, p, tables)
         fx, fy, fz, _, _, _, _, _ = brake_force(t, x, yy, z, vx, vy, vz, r, n, ion_mass, light, p)
         k = factor / m
         ax, ay, az = ax + k * fx, ay + k * fy, az + k * fz
     a[0], a[1], a[2], a[3] = ax, ay, az, 0.0
 
 
-def acceleration_plug() -> int:
-    """Address of the forces of a low orbit, for `dynamics.model`."""
-    return plug_address(_acceleration)
+def low_orbit_forces() -> Callback:
+    """The forces of a low orbit, for `dynamics.model`."""
+    return callback(_acceleration)
 
 
 # Columns of `observe_low_orbit`
@@ -167,10 +170,12 @@ COLUMNS = 20  # the last two are vectors
 
 
 @compiled
-def observe_low_orbit(time, states, factor, p):
-    """What surrounds the craft and what its brake does, at given states. time (n,), states (7, n), factor (n,), p the
-    parameter row -> (COLUMNS, n), SI, as named above: the force on the tether, N, and the unit vector from its tip to
+def observe_low_orbit(time, states, factor, parameters):
+    """What surrounds the craft and what its brake does, at given states. time (n,), states (7, n), factor (n,) ->
+    (COLUMNS, n), SI, as named above: the force on the tether, N, and the unit vector from its tip to
     the satellite are vectors. What a brake does is 0 where it is off."""
+    p = parameters[0]
+    tables = array_at(p.places.address, p.places.end)
     n = len(time)
     out = np.zeros((COLUMNS, n))
     for i in range(n):
@@ -180,28 +185,28 @@ def observe_low_orbit(time, states, factor, p):
         latitude, local_time, altitude, f107, light = surroundings(t, x, y, z, r, p)
         out[LATITUDE, i], out[LOCAL_TIME, i], out[ALTITUDE, i] = latitude, local_time % (2.0 * np.pi), altitude
         out[SOLAR_FLUX, i], out[LIGHT, i] = f107, light
-        if p[at.AIR] != at.NO_AIR:
-            density = air_density(r, latitude, local_time, altitude, f107, p)
-            k = density * p[at.AIR + 1] / m
-            ax, ay, az = atmosphere.air_drag(x, y, z, vx, vy, vz, p[at.ROTATION], k)
+        if p.air.kind != atmosphere.NONE:
+            density = air_density(r, latitude, local_time, altitude, f107, p, tables)
+            k = density * p.air.drag_area / m
+            ax, ay, az = atmosphere.air_drag(x, y, z, vx, vy, vz, p.surface.rotation, k)
             out[AIR_DENSITY, i], out[AIR_DRAG, i] = density, m * np.sqrt(ax * ax + ay * ay + az * az)
         sx, sy, sz = x / r, y / r, z / r
-        if p[at.PLASMA_ON] != 0.0:
-            density, mass = plasma_at(r, latitude, local_time, altitude, f107, p)
-            if p[at.PLASMA] != plasma.FORCE_PROFILE:
+        if p.brake.present != 0:
+            density, mass = plasma_at(r, latitude, local_time, altitude, f107, p, tables)
+            if p.plasma.kind != ionosphere.FORCE_PROFILE:
                 out[PLASMA_DENSITY, i], out[ION_MASS, i] = density, mass
             if factor[i] != 0.0:
                 fx, fy, fz, force, sx, sy, sz, voltage = brake_force(t, x, y, z, vx, vy, vz, r, density, mass, light, p)
                 out[FORCE_X, i], out[FORCE_X + 1, i], out[FORCE_X + 2, i] = fx, fy, fz
-                w = p[at.ROTATION]
+                w = p.surface.rotation
                 qx, qy, qz = vx + w * y, vy - w * x, vz
                 speed = np.sqrt(qx * qx + qy * qy + qz * qz)
                 out[FORCE, i], out[VOLTAGE, i] = factor[i] * force, voltage
                 out[TILT, i] = np.arccos(min(1.0, (x * sx + y * sy + z * sz) / r))
-                if p[at.PLASMA] != plasma.FORCE_PROFILE and voltage > 0.0:
+                if p.plasma.kind != ionosphere.FORCE_PROFILE and voltage > 0.0:
                     current = tether_current(
-                        density, mass, speed, voltage, p[at.LENGTH], p[at.WIRE_DIAMETER], p[at.POLARITY]
+                        density, mass, speed, voltage, p.brake.length, p.brake.wire_diameter, p.brake.polarity
                     )
-                    out[CURRENT, i], out[POWER, i] = current, voltage * current / p[at.EFFICIENCY]
+                    out[CURRENT, i], out[POWER, i] = current, voltage * current / p.brake.efficiency
         out[TETHER_X, i], out[TETHER_X + 1, i], out[TETHER_X + 2, i] = sx, sy, sz
     return out

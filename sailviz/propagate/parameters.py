@@ -1,46 +1,116 @@
-"""The parameter row of a Model: one flat float64 array, and who reads which place of it.
+"""The parameters of a Model by name: one record, composed of what laws, devices and the environment declare.
 
-Tables stand behind the fixed places; where each begins is written in the row itself.
+A room declares its numbers in a NamedTuple (`sun.Parameters`): fields of float or int in SI and radians, said in its
+comments. The record here has a field for each of them, and compiled code reads `p.sun.mean_longitude`. What has no
+fixed length, steering tables, atmospheres, numbers of a callback, stands in a flat array beside it, and `Places` says
+where. Compiled code gets the record alone, one pointer, and turns a name into an offset: two arrays beside each other
+in every call of the right-hand side would cost 15 %.
 """
 
 from __future__ import annotations
 
-MU, J2_STRENGTH, SURFACE_RADIUS, ROTATION = 0, 1, 2, 3  # mu is for gravity alone: gauss_jackson puts a 0 there
-STEERING = 4  # three numbers of the steering law
-DEVICE = 8  # up to five numbers of the device
-PLASMA = (
-    14  # profile; of an exponential: reference altitude m, value (N/m or 1/m3), scale height m, ion mass kg, radius m
-)
-USER_STEERING, USER_FORCE = 20, 21  # addresses of C functions, 0 for none; exact, since addresses stay below 2^53
-INTERPOLATION, ROWS = 22, 23  # of the steering table, which begins at TABLE
-THIRD_BODY = 24  # mu m3/s2 (0 for none), radius m, angular rate rad/s and initial azimuth rad of its circular orbit
-AIR = 28  # kind (below), Cd A m2; of an exponential profile: reference radius m, density kg/m3, scale height m
-ZONAL = 34  # strengths of J3 m6/s2 and J4 m7/s2
-SUN = 36  # nine numbers of environment.sun
-FLUX = 46  # four numbers of environment.solar_level
-SHADOW = 50  # a kind of environment.eclipse
-HEIGHT = 51  # altitude above the sphere (0) or the ellipsoid (1)
-PLASMA_TABLE, AIR_TABLE = 52, 53  # where the tables begin in the row
-BRAKE = 54  # ten numbers of the plasma brake, places below
-STEER_AS = 64  # the sail for which a primer law steers: its kind, then up to four numbers as from DEVICE on
-PRIMER_KIND = 69  # which law of steering.py makes the primer
-LOW_ORBIT, PRIMER_LAW = 70, 71  # addresses of plugs, 0 for none: the forces of low_orbit.py, primer_laws.py
-CONTROL, CONTROL_TABLE, CONTROL_LAW = 72, 73, 74  # plug of the voltage control, and where its table and law begin
-PRIMER_MU = 75  # m3/s2, for the laws that know the orbit
-TABLE = 80
+from typing import NamedTuple, get_type_hints
 
-NO_AIR, EXPONENTIAL_AIR, TABLED_AIR = range(3)
+import numpy as np
+from llvmlite import ir
+from numba.core import types
+from numba.extending import intrinsic
+from numba.np import arrayobj
 
-# Of the brake, from DEVICE on: length m, |V0| V, effective wire radius m, polarity (0 negative, 1 positive), attitude
-LENGTH, VOLTAGE, WIRE_RADIUS, POLARITY, ATTITUDE = range(DEVICE, DEVICE + 5)
-VERTICAL, TILTED, SPINNING = range(3)  # attitudes
-# and from BRAKE on
-WIRE_DIAMETER = BRAKE  # m, of all wires together
-EFFICIENCY = BRAKE + 1  # of the high-voltage supply
-POWER, ECLIPSE_POWER = BRAKE + 2, BRAKE + 3  # W, available in sunlight and in the shadow, inf for no limit
-TIP = BRAKE + 4  # kg, mass at the tip and a third of the tether's
-SPIN_FACTOR = BRAKE + 5  # mean force of a spinning tether over that of one across the flow
-MAGNETIC = BRAKE + 6  # share of the force that is lost where the tether lies along the magnetic field
-DENSITY_FACTOR = BRAKE + 7  # by which the plasma is denser than its model
-EARTH_ANGLE = BRAKE + 8  # rad, rotation angle of the Earth at the start
-PLASMA_ON = BRAKE + 9  # 1 where there is a brake
+from sailviz.compiled import layout
+from sailviz.environment import atmosphere, gravity, ionosphere, solar_level, sun, third_body
+from sailviz.propulsion import electric_sail, plasma_brake, solar_sail, thruster
+from sailviz.steering import attitude
+
+
+class Kinds(NamedTuple):
+    """Which branches the right-hand side takes."""
+
+    device: int = 0  # of propulsion.devices
+    steering: int = 0  # of steering.attitude
+
+
+class Surface(NamedTuple):
+    """Of the body that the craft orbits, and how a place above it is told."""
+
+    radius: float = 0.0  # m; 0 for none
+    rotation: float = 0.0  # rad/s about +z
+    ellipsoid: int = 0  # 1: altitude counts above the ellipsoid, 0: above the sphere
+    shadow: int = 0  # a kind of environment.eclipse
+
+
+class Primer(NamedTuple):
+    """The laws that follow a primer."""
+
+    kind: int = 0  # of steering.attitude: PRIMER, LOCAL or LYAPUNOV
+    sail: int = 0  # the sail for which the law steers, of propulsion.devices
+    mu: float = 0.0  # m3/s2, for the laws that know the orbit
+
+
+class Callbacks(NamedTuple):
+    """Addresses of C functions, 0 for none."""
+
+    user_steering: int = 0  # these two of callbacks.USER_SIGNATURE, the others of callbacks.SIGNATURE
+    user_force: int = 0
+    steering: int = 0
+    device: int = 0
+    control: int = 0
+    forces: int = 0  # how many forces of the environment there are; Places.forces says where their addresses stand
+
+
+class Places(NamedTuple):
+    """Where things begin in the flat array of tables."""
+
+    steering: int = 0  # numbers of the steering's callback, or its table
+    device: int = 0  # numbers of the device's callback
+    forces: int = 0  # pairs of an address and the place of its own numbers
+    air: int = 0
+    plasma: int = 0
+    sail: int = 0  # parameters of the sail for which a primer law steers
+    control: int = 0
+    control_law: int = 0
+    end: int = 0  # length of the array
+    address: int = 0  # of the array itself, which the Model keeps alive
+
+
+class Parameters(NamedTuple):
+    """Everything by name."""
+
+    kinds: Kinds
+    gravity: gravity.Parameters
+    surface: Surface
+    third_body: third_body.Parameters
+    air: atmosphere.Parameters
+    plasma: ionosphere.Parameters
+    sun: sun.Parameters
+    solar_level: solar_level.Parameters
+    solar_sail: solar_sail.Parameters
+    electric_sail: electric_sail.Parameters
+    thruster: thruster.Parameters
+    brake: plasma_brake.Parameters
+    components: attitude.Components
+    inertial: attitude.Inertial
+    local: attitude.Local
+    table: attitude.Table
+    primer: Primer
+    callbacks: Callbacks
+    places: Places
+
+
+PARTS: dict[str, type] = get_type_hints(Parameters)
+PARAMETERS = np.dtype([(name, layout(part)) for name, part in PARTS.items()], align=True)
+
+
+@intrinsic
+def array_at(typing, address, length):
+    """The float64 array (length,) at an integer address, in compiled code; `carray` of it would ask for reference
+    counting."""
+
+    def generate(context, builder, signature, arguments):
+        array = context.make_array(signature.return_type)(context, builder)
+        data = builder.inttoptr(arguments[0], ir.DoubleType().as_pointer())
+        itemsize = ir.Constant(ir.IntType(64), 8)
+        arrayobj.populate_array(array, data, [arguments[1]], [itemsize], itemsize, None)
+        return array._getvalue()
+
+    return types.Array(types.float64, 1, "C")(types.int64, types.int64), generate

@@ -11,10 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from sailviz.compiled import compiled, inlined
-from sailviz.propagate.callbacks import plugged
+from sailviz.propagate.callbacks import call
 from sailviz.propagate.dynamics import SIZE
 from sailviz.propagate.events import APSIS, END_OF_USE, RADIUS, STOP, measure
-from sailviz.propagate.parameters import CONTROL
 
 EVENT_SAMPLES = 4  # at most per step, so that two crossings inside one step are seen
 MOST_EVENTS = 4096  # recorded between two calls, and then those of one more step
@@ -26,7 +25,7 @@ DONE, STOPPED, EVENTS_FULL, UNDERFLOW, NOT_FINITE, SURFACE = range(6)
 Y, W, NEW = 16, 17, 18  # state at the start of the step, a state to evaluate, state at its end
 DENSE, CLOCK = 19, 27  # eight rows of monomial coefficients over the last step; a row of times
 
-# places in the CLOCK row and in Integration.count
+# places in the CLOCK row and in Integration.counter
 TIME, STEP, DENSE_START, DENSE_STEP = 0, 1, 2, 3
 ROW, INTERVAL, IN_USE, STARTED, STEPS, REJECTED, EVENTS, STATUS, STOPPED_BY = 0, 1, 2, 3, 4, 5, 6, 7, 8
 
@@ -35,7 +34,7 @@ class Integration(NamedTuple):
     """Everything that an integration remembers between calls."""
 
     work: np.ndarray  # (28, SIZE) sixteen stages, the first the derivative at the state; then the rows named above
-    count: np.ndarray  # (9,) int64, see the places above
+    counter: np.ndarray  # (9,) int64, see the places above
     sign: np.ndarray  # (events,) event functions at the state
     event: np.ndarray  # (MOST_EVENTS and those of one step, 9) index in the watch, time s, state
 
@@ -53,39 +52,41 @@ def state(s) -> np.ndarray:
 def drain_events(s) -> list[tuple[int, float, np.ndarray]]:
     """(index in the watch, time s, state (7,)) of every event since the last call; makes room for more. Index -1 is
     contact with the surface."""
-    n = int(s.count[EVENTS])
-    s.count[EVENTS] = 0
+    n = int(s.counter[EVENTS])
+    s.counter[EVENTS] = 0
     return [(int(row[0]), float(row[1]), row[2:].copy()) for row in s.event[:n]]
 
 
 def in_use(s) -> bool:
     """False once an END_OF_USE event has switched the device off for good."""
-    return bool(s.count[IN_USE])
+    return bool(s.counter[IN_USE])
 
 
 def stopped_by(s) -> int:
     """Index in the watch of the event that stopped the run, after STOPPED."""
-    return int(s.count[STOPPED_BY])
+    return int(s.counter[STOPPED_BY])
 
 
 def rows_done(s) -> int:
     """Rows of the current block that are filled."""
-    return int(s.count[ROW])
+    return int(s.counter[ROW])
 
 
 def statistics(s) -> tuple[int, int]:
     """Accepted and rejected steps so far."""
-    return int(s.count[STEPS]), int(s.count[REJECTED])
+    return int(s.counter[STEPS]), int(s.counter[REJECTED])
 
 
 @inlined
-def factor_from(t, y, factors, interval, model):
+def factor_from(t, y, factors, interval, p):
     """Thrust factor from the break of this number on; a voltage controller, if there is one, sets it now, seeing the
     state y."""
-    p = model.parameters
-    if p[CONTROL] != 0.0:
-        set_now = plugged(int(p[CONTROL]), t, y[0], y[1], y[2], y[3], y[4], y[5], y[6], p, float(interval))
-        factors[interval] = set_now[0]
+    if p.callbacks.control != 0:
+        x, yy, z, vx, vy, vz, m = y[0], y[1], y[2], y[3], y[4], y[5], y[6]
+        factors[interval] = call(
+            p.callbacks.control, p.places.control, t, x, yy, z, vx, vy, vz, m, 0.0, 0.0, 0.0,
+            p, float(interval),
+        )[0]  # fmt: skip
     return factors[interval]
 
 
@@ -132,12 +133,12 @@ def root(m, kind, level, mu, low, high, g_low, w):
 
 @inlined
 def note(s, index, time, w):
-    n = s.count[EVENTS]
+    n = s.counter[EVENTS]
     s.event[n, 0] = index
     s.event[n, 1] = time
     for j in range(7):
         s.event[n, 2 + j] = w[j]
-    s.count[EVENTS] = n + 1
+    s.counter[EVENTS] = n + 1
 
 
 @compiled
@@ -145,25 +146,25 @@ def find_events(s, watch, t0, h, x_end, samples, mu, w):
     """Record every event of the step [t0, t0 + h] up to x_end in order of time, looking at that many samples of it.
     Returns x of the first that stops the run or ends the use of the device, else 2, and its index."""
     dense = s.work[DENSE:CLOCK]
-    before = s.count[EVENTS]
+    before = s.counter[EVENTS]
     low = 0.0
     for piece in range(1, samples + 1):
         high = x_end * piece / samples
         stop_x, stop_index = 2.0, -1
-        first = s.count[EVENTS]
+        first = s.counter[EVENTS]
         for e in range(len(watch.kind)):
             kind, level = watch.kind[e], watch.level[e]
             evaluate(dense, high, w)
             g_low, g = s.sign[e], measure(kind, level, w, mu)
             s.sign[e] = g
-            if watch.action[e] == END_OF_USE and s.count[IN_USE] == 0:
+            if watch.action[e] == END_OF_USE and s.counter[IN_USE] == 0:
                 continue
             if not (
                 (g_low < 0.0 and g >= 0.0 and watch.sense[e] >= 0) or (g_low > 0.0 and g <= 0.0 and watch.sense[e] <= 0)
             ):
                 continue
             x = root(dense, kind, level, mu, low, high, g_low, w)
-            at = s.count[EVENTS]
+            at = s.counter[EVENTS]
             note(s, e, t0 + x * h, w)
             while at > first and s.event[at - 1, 1] > s.event[at, 1]:  # keep them in order of time
                 for j in range(9):
@@ -172,12 +173,12 @@ def find_events(s, watch, t0, h, x_end, samples, mu, w):
             if watch.action[e] != 0 and x < stop_x:
                 stop_x, stop_index = x, e
         if stop_index >= 0:
-            n = s.count[EVENTS]
+            n = s.counter[EVENTS]
             while (
                 n > before and s.event[n - 1, 1] > t0 + stop_x * h
             ):  # what would have come after the stop did not happen
                 n -= 1
-            s.count[EVENTS] = n
+            s.counter[EVENTS] = n
             evaluate(dense, stop_x, w)
             for e in range(len(watch.kind)):
                 s.sign[e] = measure(watch.kind[e], watch.level[e], w, mu)
@@ -212,11 +213,98 @@ def happenings(s, watch, t0, h, touched, passed, samples, mu, surface, new, w):
     if contact < min(stop_x, 2.0):
         evaluate(m, contact, w)
         note(s, -1, t0 + contact * h, w)
-        stop_x, stop_index, s.count[STATUS] = contact, -1, SURFACE
+        stop_x, stop_index, s.counter[STATUS] = contact, -1, SURFACE
     if stop_x < 2.0:  # the run goes on, or ends, at the event
         evaluate(m, stop_x, new)
         if stop_index >= 0 and watch.action[stop_index] == STOP:
-            s.count[STATUS], s.count[STOPPED_BY] = STOPPED, stop_index
+            s.counter[STATUS], s.counter[STOPPED_BY] = STOPPED, stop_index
         elif stop_index >= 0:
-            s.count[IN_USE] = 0
+            s.counter[IN_USE] = 0
     return stop_x
+
+
+@inlined
+def begin(s, watch, breaks, factors, p):
+    """Find the interval of the thrust in which the start lies, set its factor, and keep the signs of the event
+    functions there. The derivative is left to the caller, as in `settle`: called from here the right-hand side would be
+    compiled into each integrator once more, which costs half as much again, and other last digits."""
+    count, y, t = s.counter, s.work[Y], s.work[CLOCK, TIME]
+    count[STARTED] = 1
+    while count[INTERVAL] + 1 < len(breaks) and breaks[count[INTERVAL] + 1] <= t:
+        count[INTERVAL] += 1
+    factor_from(t, y, factors, count[INTERVAL], p)
+    for e in range(len(watch.kind)):
+        s.sign[e] = measure(watch.kind[e], watch.level[e], y, p.gravity.mu)
+
+
+@inlined
+def open_block(count):
+    """(row at which this block goes on, whether the run has ended in a step of which rows are still to be filled)."""
+    row = 0
+    if count[STATUS] == EVENTS_FULL:
+        row = count[ROW]
+    ended = count[STATUS] == STOPPED or count[STATUS] == SURFACE
+    if not ended:
+        count[STATUS] = DONE
+    return row, ended
+
+
+@inlined
+def rows_until(t, s, t_out, out, row, vector):
+    """Fill the rows inside the last step, or exactly at its end t, by whole vectors; returns the first beyond."""
+    n, clock, y = t_out.shape[0], s.work[CLOCK], s.work[Y]
+    while row < n and t_out[row] <= t:
+        if t_out[row] == t:
+            for j in range(out.shape[0]):
+                out[j, row] = y[j]
+            row += 1
+            continue
+        last = row + 1
+        while last < n and t_out[last] < t:
+            last += 1
+        # what is filled beyond the step is overwritten by the next
+        whole = min(n, row + (last - row + vector - 1) // vector * vector)
+        fill(s.work[DENSE:CLOCK], clock[DENSE_START], clock[DENSE_STEP], t_out, out, row, whole)
+        row = last
+    return row
+
+
+@inlined
+def next_limit(breaks, interval, t_end):
+    """The next time at which the thrust has a kink, or the end."""
+    limit = t_end
+    if interval + 1 < len(breaks) and breaks[interval + 1] < limit:
+        limit = breaks[interval + 1]
+    return limit
+
+
+@inlined
+def settle(s, breaks, factors, p, t, limit, t_end, cut, interval, factor):
+    """Make the end of a step, in the row NEW, the state to go on from. cut : whether an event has cut it short. Returns
+    the interval of the thrust, its factor, and whether the force jumps here, so that its derivative is to be made
+    anew."""
+    k, count = s.work, s.counter
+    new = k[NEW]
+    new_factor = factor
+    if t == limit and limit < t_end and interval + 1 < len(breaks):
+        interval += 1
+        new_factor = factor_from(t, new, factors, interval, p)
+    new_factor = new_factor * count[IN_USE]
+    jumps = cut or new_factor != factor or (t == limit and limit < t_end)
+    if not jumps:
+        for j in range(SIZE):
+            k[0, j] = k[12, j]
+    for j in range(SIZE):
+        k[Y, j] = new[j]
+    k[CLOCK, TIME], count[INTERVAL] = t, interval
+    return interval, new_factor, jumps
+
+
+@inlined
+def close_block(s, t_out, row, ended):
+    """Remember how far the block is filled; returns the status."""
+    n = t_out.shape[0]
+    s.counter[ROW] = row
+    if ended and row == n and n > 0 and t_out[n - 1] < s.work[CLOCK, TIME]:
+        return DONE  # the next block may have rows before the end
+    return s.counter[STATUS]

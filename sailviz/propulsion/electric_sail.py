@@ -5,6 +5,8 @@ Source: thesis, section 3.3, (3.33)-(3.48), read in excerpt; polynomial coeffici
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
@@ -18,6 +20,14 @@ MODELS = {"final": FINAL, "original": ORIGINAL, "updated": UPDATED, "polynomial"
 CONE_MAX = np.arcsin(1 / 3)  # 19.4712 deg, the final model's largest cone angle, from (3.44)
 PITCH_AT_CONE_MAX = np.arccos(1 / np.sqrt(3))  # 54.7356 deg
 PITCH_LIMIT = np.radians(60.0)  # of the original and updated models: the thesis trusts them to 60-70 deg
+
+
+class Parameters(NamedTuple):
+    """An electric sail in compiled code."""
+
+    characteristic_acceleration: float  # m/s2
+    model: float  # of MODELS
+    pitch_limit: float  # rad
 
 
 @inlined

@@ -8,6 +8,7 @@ thin cylinder.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +19,28 @@ from sailviz.constants import BOLTZMANN, ELEMENTARY_CHARGE, MASS_ELECTRON, VACUU
 PHOTOELECTRONS = 40e-6  # A/m2 of lit wire, the order for metals in sunlight at 1 au; from memory
 MULTI_WIRE = 1.1e-5  # kg/m: 55 g on 5 km, Janhunen, Ann. Geophys. 32, 1207 (2014), abstract
 ALUMINIUM = 2700.0  # kg/m3
+
+NEGATIVE, POSITIVE = 0, 1  # polarities
+VERTICAL, TILTED, SPINNING = range(3)  # attitudes of the tether
+
+
+class Parameters(NamedTuple):
+    """A plasma brake in compiled code."""
+
+    length: float  # m
+    voltage: float  # V, its size
+    wire_radius: float  # m, effective electric radius
+    polarity: int = NEGATIVE
+    attitude: int = VERTICAL
+    wire_diameter: float = 0.0  # m, of all wires together
+    efficiency: float = 1.0  # of the high-voltage supply
+    power: float = np.inf  # W, available in sunlight; inf for no limit
+    eclipse_power: float = np.inf  # W, available in the shadow
+    tip_mass: float = 0.0  # kg, mass at the tip and a third of the tether's
+    spin_factor: float = 1.0  # mean force of a spinning tether over that of one across the flow
+    magnetic_sensitivity: float = 0.0  # share of the force that is lost where the tether lies along the magnetic field
+    earth_angle: float = 0.0  # rad, rotation angle of the Earth at the start
+    present: int = 1  # 0 in a record without a brake
 
 
 def force_per_length(

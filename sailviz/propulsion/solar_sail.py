@@ -6,6 +6,7 @@ Source: thesis, section 3.2, (3.2)-(3.23), read in excerpt; coefficients of the 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +14,15 @@ import numpy.typing as npt
 from sailviz.compiled import compiled, inlined
 from sailviz.constants import AU, GRAVITY_AT_1_AU, RADIATION_PRESSURE
 from sailviz.propulsion.rows import as_rows
+
+
+class Parameters(NamedTuple):
+    """A solar sail in compiled code."""
+
+    strength: float  # a_c r_E^2 / (b1 + b2 + b3), m3/s2
+    b1: float
+    b2: float
+    b3: float
 
 
 @dataclass(frozen=True)

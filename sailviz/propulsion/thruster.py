@@ -5,11 +5,21 @@ Source: thesis, (2.3): m_dot = -m a / (g0 Isp).
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import numpy.typing as npt
 
 from sailviz.compiled import inlined
 from sailviz.constants import STANDARD_GRAVITY
+
+
+class Parameters(NamedTuple):
+    """A thruster in compiled code."""
+
+    size: float  # m/s2, or N
+    is_force: float  # 1 where size is a force, 0 where it is an acceleration
+    inverse_exhaust: float  # 1 / (g0 Isp), s/m; 0 for no loss of mass
 
 
 @inlined

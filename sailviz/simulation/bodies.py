@@ -25,14 +25,6 @@ def body_of(scene: Scene) -> Body:
     return Body(scene.body.name, scene.body.mu, scene.body.radius)
 
 
-def third_body(scene: Scene) -> tuple[float, ...]:
-    """mu m3/s2, radius m, rate rad/s and azimuth rad of a third body on its circle; () without one."""
-    third = scene.environment.third_body
-    if third is None:
-        return ()
-    return third.mu, third.radius, np.sqrt(MU_SUN / third.radius**3), third.azimuth
-
-
 def epoch_of(scene: Scene) -> np.datetime64 | None:
     """UTC of t = 0."""
     return None if scene.epoch_utc is None else np.datetime64(scene.epoch_utc, "ns")

@@ -1,75 +1,259 @@
-"""What a scene says of its device, as numbers of the right-hand side."""
+"""What a scene says of its device: one record for each kind, keyed by the class of its section.
+
+A new device: its force in sailviz/propulsion, its section in scene/device.py, its record here, and how it is drawn in
+recording/drawing/devices.py.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
-from sailviz.constants import AU, STANDARD_GRAVITY
+from sailviz import ephemeris
+from sailviz.constants import ATOMIC_MASS, AU, STANDARD_GRAVITY
+from sailviz.environment import ionosphere
 from sailviz.propagate import dynamics
-from sailviz.propulsion import electric_sail
+from sailviz.propagate import events as happening
+from sailviz.propagate import low_orbit_callback as seen
+from sailviz.propulsion import electric_sail, plasma_brake, solar_sail, thruster
 from sailviz.propulsion.solar_sail import FILMS, Film
-from sailviz.simulation.low_orbit import brake_device
+from sailviz.run.arrays import Body, Craft
+from sailviz.scene.device import Device as DeviceSection
+from sailviz.scene.device import ElectricSail, NoDevice, PlasmaBrake, SolarSail, Thruster
+from sailviz.scene.values import Section
+from sailviz.simulation.bodies import epoch_of
+from sailviz.simulation.lowered import Array, Columns, LoweredDevice, Words, no_columns, no_words
+from sailviz.simulation.steering import steering_of
+from sailviz.words import acceleration, length
 
 if TYPE_CHECKING:
-    pass
+    from sailviz.scene.loading import Scene
+
+D = TypeVar("D", bound=DeviceSection)
+Happening = tuple[str, tuple[int, float, int, int]]  # name of an event, and its row of `events.watch`
 
 
-def film_of(scene) -> Film:
+def _no_size(device: DeviceSection) -> dict[str, Any]:
+    return {}
+
+
+def _no_events(device: DeviceSection, body: Body) -> list[Happening]:
+    return []
+
+
+@dataclass(frozen=True)
+class Device(Generic[D]):
+    """A kind of device."""
+
+    label: str
+    lower: Callable[[D, Scene, Any], LoweredDevice]  # from the section, the scene and its design
+    words: Callable[[D], Words] = no_words
+    size: Callable[[D], dict[str, Any]] = _no_size  # keywords of run.arrays.Craft
+    sail: Callable[[D], Film | str] | None = None  # of a sail: as design functions take it
+    strength: Callable[[D, Any], float] | None = None  # of a sail: a_c m/s2, from the section and the design
+    events: Callable[[D, Body], list[Happening]] = _no_events  # that come with it
+    columns: Callable[[D, Scene, dynamics.Model, Array, Array], Columns] = no_columns  # observed, states of low orbit
+    pull: Callable[[Array, Array, Array], tuple[Array, Array]] | None = None  # normal and acceleration, from those
+
+
+# ---------------------------------------------------------------- sails
+def film_of(scene: Scene) -> Film:
     """Force coefficients of the scene's solar sail."""
-    given = scene.device.film
+    assert isinstance(scene.device, SolarSail)
+    return _film(scene.device)
+
+
+def _film(device: SolarSail) -> Film:
+    given = device.film
     if isinstance(given, str):
         return FILMS[given]
     values = given.model_dump()
     return Film(**values) if "b1" in values else Film.from_optics(**values)
 
 
-def _sail_name(scene):
-    """The scene's sail as design functions take it: a Film, or the name of an E-sail model."""
-    if scene.device.kind == "solar-sail":
-        return film_of(scene)
-    return "electric-sail" if scene.device.model == "final" else f"electric-sail-{scene.device.model}"
-
-
-def sail_strength(scene, design) -> float:
+def sail_strength(scene: Scene, design: Any) -> float:
     """Characteristic acceleration, m/s2, of either sail."""
-    device = scene.device
-    if device.characteristic_acceleration == "as designed":
+    strength = device_of(scene).strength
+    assert strength is not None  # only sails are asked for it
+    return strength(scene.device, design)
+
+
+def _said_strength(device: SolarSail | ElectricSail, design: Any) -> float | None:
+    """a_c, m/s2, where the scene says it or the design knows it."""
+    given = device.characteristic_acceleration
+    if given == "as designed":
         return float(np.max(design.characteristic_acceleration))  # of a track: at full throttle
-    if device.characteristic_acceleration is not None:
-        return device.characteristic_acceleration
-    if device.kind == "electric-sail":
-        return float(
-            electric_sail.characteristic_acceleration(
-                device.tethers,
-                device.tether_length,
-                device.voltage,
-                device.mass,
-                device.wind_pressure,
-                device.wind_potential,
-            )
-        )
-    return film_of(scene).characteristic_acceleration(
+    return given
+
+
+def _film_strength(device: SolarSail, design: Any) -> float:
+    said = _said_strength(device, design)
+    if said is not None:
+        return said
+    return _film(device).characteristic_acceleration(
         lightness=device.lightness_number, area=device.area, mass=device.mass
     )
 
 
-def _device(scene, design):
-    """(id, parameters) for the right-hand side."""
-    device = scene.device
-    if device.kind == "solar-sail":
-        film = film_of(scene)
-        strength = sail_strength(scene, design) * AU**2 / film.total
-        return dynamics.SOLAR_SAIL, (strength, film.b1, film.b2, film.b3)
-    if device.kind == "electric-sail":
-        model = electric_sail.MODELS[device.model]
-        return dynamics.ELECTRIC_SAIL, (sail_strength(scene, design), model, device.pitch_limit)
-    if device.kind == "plasma-brake":
-        return dynamics.PLASMA_BRAKE, brake_device(scene)
-    if device.kind == "thruster":
-        size = device.thrust if device.thrust is not None else device.acceleration
-        exhaust = device.specific_impulse
-        inverse = 0.0 if exhaust is None else 1.0 / (STANDARD_GRAVITY * exhaust)
-        return dynamics.THRUSTER, (size, float(device.thrust is not None), inverse)
-    return dynamics.NO_DEVICE, ()
+def _solar_sail(device: SolarSail, scene: Scene, design: Any) -> LoweredDevice:
+    film = _film(device)
+    strength = _film_strength(device, design) * AU**2 / film.total
+    return LoweredDevice(dynamics.SOLAR_SAIL, solar_sail.Parameters(strength, film.b1, film.b2, film.b3))
+
+
+def _solar_sail_words(device: SolarSail) -> Words:
+    return [] if device.lightness_number is None else [("lightness number", f"{device.lightness_number:.6g}")]
+
+
+def _solar_sail_size(device: SolarSail) -> dict[str, Any]:
+    return {"side": None if device.area is None else float(np.sqrt(device.area))}
+
+
+def _electric_strength(device: ElectricSail, design: Any) -> float:
+    said = _said_strength(device, design)
+    if said is not None:
+        return said
+    d = device
+    hardware: list[Any] = [d.tethers, d.tether_length, d.voltage, d.mass, d.wind_pressure, d.wind_potential]
+    return float(electric_sail.characteristic_acceleration(*hardware))
+
+
+def _electric_sail(device: ElectricSail, scene: Scene, design: Any) -> LoweredDevice:
+    model = electric_sail.MODELS[device.model]
+    numbers = electric_sail.Parameters(_electric_strength(device, design), model, device.pitch_limit)
+    return LoweredDevice(dynamics.ELECTRIC_SAIL, numbers)
+
+
+def _electric_name(device: ElectricSail) -> str:
+    return "electric-sail" if device.model == "final" else f"electric-sail-{device.model}"
+
+
+def _electric_size(device: ElectricSail) -> dict[str, Any]:
+    return {"tethers": device.tethers, "tether_length": device.tether_length}
+
+
+# ---------------------------------------------------------------- thruster
+def _thruster(device: Thruster, scene: Scene, design: Any) -> LoweredDevice:
+    size = device.thrust if device.thrust is not None else device.acceleration
+    assert size is not None
+    exhaust = device.specific_impulse
+    inverse = 0.0 if exhaust is None else 1.0 / (STANDARD_GRAVITY * exhaust)
+    return LoweredDevice(dynamics.THRUSTER, thruster.Parameters(size, float(device.thrust is not None), inverse))
+
+
+def _thruster_words(device: Thruster) -> Words:
+    if device.acceleration is not None:
+        return [("acceleration", acceleration(device.acceleration))]
+    assert device.thrust is not None
+    return [("thrust", f"{device.thrust * 1e3:g} mN"), ("mass", f"{device.mass:g} kg")]
+
+
+# ---------------------------------------------------------------- plasma brake
+def _brake(device: PlasmaBrake, scene: Scene, design: Any) -> LoweredDevice:
+    power = np.inf if device.power is None else device.power
+    mass = device.tether_mass if device.tether_mass is not None else plasma_brake.tether_mass(device.tether_length)
+    tether = steering_of(scene.steering).tether(scene.steering)
+    epoch = epoch_of(scene)
+    numbers = plasma_brake.Parameters(
+        length=device.tether_length,
+        voltage=abs(device.voltage),
+        wire_radius=device.wire_radius,
+        polarity=plasma_brake.POSITIVE if device.polarity == "positive" else plasma_brake.NEGATIVE,
+        attitude=tether.attitude,
+        wire_diameter=device.wire_diameter,
+        efficiency=device.efficiency,
+        power=power,
+        eclipse_power={"on": power, "off": 0.0, "limited": device.eclipse_power or 0.0}[device.eclipse],
+        tip_mass=float((device.tip_mass or 0.0) + mass / 3),
+        spin_factor=tether.spin_factor,
+        magnetic_sensitivity=scene.environment.magnetic_sensitivity,
+        earth_angle=0.0 if epoch is None else float(ephemeris.greenwich_sidereal_time(epoch)),
+    )
+    return LoweredDevice(dynamics.PLASMA_BRAKE, numbers, forces=(seen.low_orbit_forces(),))
+
+
+def _brake_words(device: PlasmaBrake) -> Words:
+    sign = "+" if device.polarity == "positive" else "−"
+    return [
+        ("tether", length(device.tether_length)),
+        ("voltage", f"{sign}{abs(device.voltage):g} V"),
+        ("mass", f"{device.mass:g} kg"),
+    ]
+
+
+def _brake_off(device: PlasmaBrake, body: Body) -> list[Happening]:
+    return [("brake off", (happening.RADIUS, body.radius + device.off_below, -1, happening.END_OF_USE))]
+
+
+def _brake_columns(device: PlasmaBrake, scene: Scene, model: dynamics.Model, values: Array, velocity: Array) -> Columns:
+    columns = {"plasma_force_N_m": values[seen.FORCE]}
+    named = model.named
+    if named.plasma.kind == ionosphere.FORCE_PROFILE:
+        return columns
+    density, ion_mass, voltage = values[seen.PLASMA_DENSITY], values[seen.ION_MASS], values[seen.VOLTAGE]
+    columns |= {
+        "plasma_density_per_m3": density,
+        "mean_ion_mass_u": ion_mass / ATOMIC_MASS,
+        "tether_voltage_V": voltage if device.polarity == "positive" else 0.0 - voltage,  # never -0
+        "tether_current_A": values[seen.CURRENT],
+        "tether_power_W": values[seen.POWER],
+    }
+    if named.brake.attitude == plasma_brake.TILTED:
+        columns["tether_tilt_rad"] = values[seen.TILT]
+    speed = np.linalg.norm(velocity, axis=1)
+    holds = plasma_brake.validity(
+        density, ion_mass, speed, abs(device.voltage), device.tether_length, values[seen.ALTITUDE], device.wire_radius
+    )
+    columns["force_law_valid"] = np.asarray(holds.all)
+    return columns
+
+
+def _brake_pull(values: Array, states: Array, factor: Array) -> tuple[Array, Array]:
+    """The tether's direction as the normal, and the acceleration m/s2, (n, 3) each."""
+    force = values[seen.FORCE_X : seen.FORCE_X + 3]
+    return values[seen.TETHER_X : seen.TETHER_X + 3].T.copy(), (factor / states[6] * force).T
+
+
+DEVICES: dict[type[Section], Device[Any]] = {  # the functions of each record take the class that it stands under
+    SolarSail: Device[SolarSail](
+        "Solar sail",
+        _solar_sail,
+        words=_solar_sail_words,
+        size=_solar_sail_size,
+        sail=_film,
+        strength=_film_strength,
+    ),
+    ElectricSail: Device[ElectricSail](
+        "E-sail", _electric_sail, size=_electric_size, sail=_electric_name, strength=_electric_strength
+    ),
+    PlasmaBrake: Device[PlasmaBrake](
+        "Plasma brake",
+        _brake,
+        words=_brake_words,
+        size=lambda device: {"tether_length": device.tether_length},
+        events=_brake_off,
+        columns=_brake_columns,
+        pull=_brake_pull,
+    ),
+    Thruster: Device[Thruster]("Thruster", _thruster, words=_thruster_words),
+    NoDevice: Device[NoDevice]("Spacecraft", lambda device, scene, design: LoweredDevice(dynamics.NO_DEVICE)),
+}
+
+
+def device_of(scene: Scene) -> Device[Any]:
+    """The record of the scene's device."""
+    return DEVICES[type(scene.device)]
+
+
+def strength_or_none(scene: Scene, design: Any) -> float | None:
+    """Characteristic acceleration, m/s2, of a sail; None of any other device."""
+    return None if device_of(scene).sail is None else sail_strength(scene, design)
+
+
+def craft(scene: Scene) -> Craft:
+    """What flies, for its mesh and its labels."""
+    record = device_of(scene)
+    return Craft(scene.device.kind, record.label, **record.size(scene.device))

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sailviz.propagate import events
-from sailviz.scene.device import PlasmaBrake
+from sailviz.simulation.device import device_of
 
 if TYPE_CHECKING:
     from sailviz.run.arrays import Body
@@ -62,7 +62,7 @@ def watched(scene: Scene, body: Body) -> tuple[tuple[str, ...], events.Watch]:
         action = events.STOP if event.stop else events.RECORD
         names.append(event.name or event.kind)
         rows.append((kind.function(scene), kind.level(event, body), sense, action))
-    if isinstance(scene.device, PlasmaBrake):
-        names.append("brake off")
-        rows.append((events.RADIUS, body.radius + scene.device.off_below, -1, events.END_OF_USE))
+    for name, row in device_of(scene).events(scene.device, body):
+        names.append(name)
+        rows.append(row)
     return tuple(names), events.watch(rows)

@@ -13,6 +13,7 @@ from sailviz import frames
 from sailviz.errors import PropagationError
 from sailviz.propagate import dop853, dynamics, gauss_jackson, stepping
 from sailviz.propagate.choice import DOP853, GAUSS_JACKSON
+from sailviz.propulsion.devices import CALLED, THRUSTER
 from sailviz.run.arrays import Attitude, EnsembleStatistics, Event, Run, Setting, Thrust, join
 from sailviz.scene.loading import SceneSource, load_scene
 from sailviz.scene.sections import Propagation
@@ -176,7 +177,7 @@ def _fill(
     """One block. Switching times are computed along with the rows."""
     run = p.scene.propagation
     moments = np.unique(np.concatenate([times, [time for time, _ in switches]])) if switches else times
-    components = 7 if p.model.device == dynamics.THRUSTER else 6
+    components = 7 if p.model.device in (THRUSTER, CALLED) else 6
     out = np.empty((components, len(moments)))
     piece = max(1, min(len(moments), output_rows // 50))  # often enough to show progress and to hear Ctrl-C
     found: list[Event] = []

@@ -11,19 +11,18 @@ import numpy as np
 import sailviz
 from sailviz import elements as orbital
 from sailviz import ephemeris
-from sailviz.environment import ionosphere, solar_level, sun
+from sailviz.environment import ionosphere
 from sailviz.propagate import dop853
-from sailviz.propagate import parameters as row
 from sailviz.propagate.choice import GAUSS_JACKSON
-from sailviz.run.arrays import Craft, Reference, Setting, Shell
-from sailviz.scene.body import Target
+from sailviz.run.arrays import Reference, Setting, Shell
 from sailviz.scene.start import DesignedStart
-from sailviz.scene.steering import LyapunovSteering
-from sailviz.simulation.bodies import epoch_of, third_body
-from sailviz.simulation.device import sail_strength
+from sailviz.simulation.bodies import epoch_of
+from sailviz.simulation.device import craft
+from sailviz.simulation.environment import ENVIRONMENT, drawn_bodies
 from sailviz.simulation.parameters_in_words import parameters_in_words
 from sailviz.simulation.plan import Plan
 from sailviz.simulation.start import departure
+from sailviz.simulation.steering import steering_of
 
 SHELL_ANGLES, SHELL_STEP = 120, 25e3  # round the orbit; m between altitudes
 
@@ -38,12 +37,12 @@ def setting_of(p: Plan, planets, rows, ensembles=()) -> Setting:
         look_for=tuple(scene.look_for),
         thesis=scene.thesis,
         body=p.body,
-        craft=_craft(scene),
+        craft=craft(scene),
         duration=duration,
         rows=rows,
         epoch=epoch_of(scene),
         references=_references(p, planets),
-        parameters=tuple(parameters_in_words(scene, p.design, _words_strength(scene, p.design))),
+        parameters=tuple(parameters_in_words(scene, p.design)),
         text=scene.text,
         resolved=scene.resolved(),
         versions={
@@ -80,29 +79,6 @@ def _family(scene) -> str:
     return "displaced" if isinstance(scene.start, DesignedStart) else "spirals"
 
 
-def _craft(scene) -> Craft:
-    device = scene.device
-    labels = {
-        "solar-sail": "Solar sail",
-        "electric-sail": "E-sail",
-        "plasma-brake": "Plasma brake",
-        "thruster": "Thruster",
-        "none": "Spacecraft",
-    }
-    area = getattr(device, "area", None)
-    return Craft(
-        device.kind,
-        labels[device.kind],
-        side=None if area is None else float(np.sqrt(area)),
-        tethers=getattr(device, "tethers", None),
-        tether_length=getattr(device, "tether_length", None),
-    )
-
-
-def _words_strength(scene, design):
-    return sail_strength(scene, design) if scene.device.kind in ("solar-sail", "electric-sail") else None
-
-
 def _references(p: Plan, planets) -> tuple[Reference, ...]:
     """Curves that are there from the start: the orbit designed, the orbit departed from, the planets' orbits."""
     found = []
@@ -132,29 +108,23 @@ def _ellipse(orbit: orbital.Elements, turn, mu):
 
 def _target(p: Plan) -> tuple[str, orbital.Elements] | None:
     """Name and elements of the orbit that a scene wants to reach, or that its law steers towards."""
-    wanted, steering = p.scene.target, p.scene.steering
+    wanted = p.scene.target
     if wanted is None:
-        return _aim_of_law(steering) if isinstance(steering, LyapunovSteering) else None
+        aim = steering_of(p.scene.steering).target(p.scene.steering)
+        return None if aim is None else ("target orbit", aim)
     if wanted.planet is not None:
         name = wanted.planet.capitalize()
         return wanted.name or f"orbit of {name}", ephemeris.planet_ellipse(name, epoch_of(p.scene))
-    return wanted.name or "target orbit", _elements_of(wanted, wanted.radius or wanted.semi_major_axis)
-
-
-def _aim_of_law(steering: LyapunovSteering) -> tuple[str, orbital.Elements]:
-    return "target orbit", _elements_of(steering, steering.semi_major_axis)
-
-
-def _elements_of(orbit: Target | LyapunovSteering, size: float | None) -> orbital.Elements:
-    """Elements of an orbit of a scene, scalars, at its periapsis. size : semi-major axis m."""
-    scalars: list[Any] = [size, orbit.eccentricity, orbit.inclination, orbit.raan, orbit.argument, 0.0]
-    return orbital.Elements(*scalars)
+    size = wanted.radius or wanted.semi_major_axis
+    scalars: list[Any] = [size, wanted.eccentricity, wanted.inclination, wanted.raan, wanted.argument, 0.0]
+    return wanted.name or "target orbit", orbital.Elements(*scalars)
 
 
 def _shells(p: Plan) -> tuple[Shell, ...]:
     """The plasma that a tether meets, in the plane of its first orbit."""
     plasma, earth = p.scene.environment.ionosphere, p.body.radius
-    if p.body.name != "Earth" or plasma is None or plasma.kind == "exponential-force":
+    record = None if plasma is None else ENVIRONMENT[type(plasma)].density
+    if p.body.name != "Earth" or record is None:
         return ()
     normal = np.cross(p.position, p.velocity)
     normal /= np.linalg.norm(normal)
@@ -163,16 +133,8 @@ def _shells(p: Plan) -> tuple[Shell, ...]:
     axis = orbital.elements(p.position, p.velocity, p.body.mu)
     highest = float(axis.semi_major_axis * (1 + axis.eccentricity)) - earth
     altitude = np.arange(ionosphere.LOWEST, min(highest + 100e3, ionosphere.HIGHEST) + 1.0, SHELL_STEP)
-    if plasma.kind == "iri-2020":
-        place = np.outer(np.cos(angle), towards) + np.outer(np.sin(angle), np.cross(normal, towards))
-        model = p.model.parameters
-        hour = np.arctan2(place[:, 1], place[:, 0]) - sun.mean_right_ascension.py_func(0.0, model, row.SUN) + np.pi
-        flux = solar_level.flux.py_func(0.0, model, row.FLUX)
-        density, _ = ionosphere.density(np.arcsin(place[:, 2])[:, None], hour[:, None], altitude, flux)
-        density = density * plasma.density_factor
-    else:
-        fade = ionosphere.exponential.py_func(altitude, plasma.reference_altitude, plasma.density, plasma.scale_height)
-        density = np.tile(fade, (len(angle), 1))
+    place = np.outer(np.cos(angle), towards) + np.outer(np.sin(angle), np.cross(normal, towards))
+    density = record(plasma, p.model.named, place, angle, altitude)
     return (Shell("plasma density", "1/m³", normal, towards, angle, altitude, density),)
 
 
@@ -180,10 +142,8 @@ def planets_in_view(p: Plan) -> dict[str, np.ndarray]:
     """Name -> orbit (k, 3) m of the planets that a heliocentric run comes near."""
     if p.body.name != "Sun":
         return {}
-    third = p.scene.environment.third_body
-    if third is not None:  # the planets of this scene are the one whose gravity acts
-        turn = np.linspace(0, 2 * np.pi, 361)
-        return {third.name: third.radius * np.column_stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)])}
+    if drawn := drawn_bodies(p.scene):  # the planets of this scene are those whose gravity acts
+        return {body.name: body.orbit for body in drawn}
     reach = 1.15 * _farthest(p)
     orbits = {name: ephemeris.planet_orbit(name, epoch_of(p.scene)) for name in ephemeris.PLANETS}
     return {name: orbit for name, orbit in orbits.items() if np.linalg.norm(orbit, axis=1).min() <= reach}
@@ -201,11 +161,8 @@ def _farthest(p: Plan) -> float:
 
 def bodies(p: Plan, planets, time) -> dict[str, np.ndarray]:
     """Positions (n, 3) m of what is drawn beside the craft; nothing without an epoch."""
-    third = p.scene.environment.third_body
-    if third is not None:
-        _, radius, rate, azimuth = third_body(p.scene)
-        angle = azimuth + rate * time
-        return {third.name: radius * np.column_stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)])}
+    if drawn := drawn_bodies(p.scene):
+        return {body.name: body.position(time) for body in drawn}
     epoch = epoch_of(p.scene)
     if epoch is None:
         return {}

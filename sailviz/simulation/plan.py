@@ -16,25 +16,26 @@ from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.callbacks import user_address
 from sailviz.propagate.choice import Choice, choose
 from sailviz.propagate.events import Watch, watch
-from sailviz.propagate.voltage_callback import R_REF, U_REF, WANTED, factor_plug
+from sailviz.propagate.voltage_callback import R_REF, U_REF, WANTED, voltage_callback
 from sailviz.run.arrays import Body
 from sailviz.scene.device import DistanceControl, control_of
 from sailviz.scene.loading import Scene
-from sailviz.simulation.low_orbit import low_orbit_parts
+from sailviz.simulation.environment import parts_of, surroundings
+from sailviz.simulation.lowered import Flight, LoweredSteering, Place, merged
 from sailviz.simulation.thrust_history import Schedule, schedule
-from sailviz.steering import attitude as law
+from sailviz.steering import attitude
 
 if TYPE_CHECKING:
     from sailviz.simulation.first_order import FirstOrder
     from sailviz.simulation.quasi_circular import QuasiCircular
     from sailviz.simulation.start import Design
 from sailviz.simulation.approximations import first_orders, quasi_circular_decay
-from sailviz.simulation.bodies import body_of, epoch_of, third_body
-from sailviz.simulation.device import _device
+from sailviz.simulation.bodies import body_of, epoch_of
+from sailviz.simulation.device import device_of, strength_or_none
 from sailviz.simulation.events import watched
 from sailviz.simulation.identity import identity_of
 from sailviz.simulation.start import design_of, held_radius, initial_state
-from sailviz.simulation.steering import _primer_law, _steering
+from sailviz.simulation.steering import steering_of
 
 
 @dataclass(frozen=True)
@@ -66,26 +67,32 @@ def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
     """
     body, design = body_of(scene), design_of(scene)
     position, velocity = initial_state(scene, body, design)
-    device, device_parameters = _device(scene, design)
-    law_id, law_parameters, table, interpolation, switches = _steering(scene, design, position, velocity)
+    device = device_of(scene).lower(scene.device, scene, design)
+    sail, strength = device_of(scene).sail, strength_or_none(scene, design)
+    shape = None if sail is None else sail(scene.device)
+    flight = Flight(scene, design, position, velocity, device, shape, strength)
+    steered = steering_of(scene.steering).lower(scene.steering, flight)
     addresses, keep = _own_functions(steering=steering, force=force)
     if steering is not None:
-        law_id, law_parameters, table, interpolation, switches = law.USER, (), None, law.LINEAR, ()
-    when = schedule(scene, table)
-    when = replace(when, switches=tuple(sorted({*when.switches, *switches})))
+        steered = LoweredSteering(attitude.USER)
+    when = schedule(scene, steered.table)
+    when = replace(when, switches=tuple(sorted({*when.switches, *steered.switches})))
     names, watching = watched(scene, body)
-    parts = dict(
-        device=device,
-        device_parameters=device_parameters,
-        steering=law_id,
-        steering_parameters=law_parameters,
-        interpolation=interpolation,
-        table=table,
-        surface_radius=body.radius,
-        third_body=third_body(scene),
+    place = Place(scene, body, epoch_of(scene))
+    around = [record.lower(part, place) for part, record in parts_of(scene)]
+    parts: dict[str, Any] = dict(
+        device=device.kind,
+        device_parameters=device.parameters,
+        device_callback=device.callback,
+        steering=steered.kind,
+        steering_parameters=steered.parameters,
+        steering_callback=steered.callback,
+        steer_as=steered.steer_as,
+        primer_kind=steered.primer_kind,
+        interpolation=steered.interpolation,
+        table=steered.table,
         **addresses,
-        **_primer_law(scene, law_id, device, device_parameters),
-        **low_orbit_parts(scene, body, epoch_of(scene)),
+        **merged({"forces": device.forces}, surroundings(scene, body, place.epoch), *around),
     )
 
     def nominal(times: np.ndarray) -> np.ndarray:
@@ -101,7 +108,7 @@ def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
         velocity,
         scene.device.mass or 1.0,
         model,
-        table,
+        steered.table,
         when,
         watching,
         names,
@@ -134,7 +141,7 @@ def _controlled(scene: Scene, when: Schedule, nominal: Callable[[np.ndarray], np
         states = nominal(when.breaks)
         r = np.linalg.norm(states[:3], axis=0)
         lines[:, R_REF], lines[:, U_REF] = r, np.sum(states[:3] * states[3:], axis=0) / r
-    return {"control": factor_plug(), "control_table": lines, "control_law": when.law}
+    return {"control": voltage_callback(), "control_table": lines, "control_law": when.law}
 
 
 def _integrator(

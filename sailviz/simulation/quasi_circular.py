@@ -14,8 +14,8 @@ from sailviz.constants import FLATTENING_EARTH, J2_EARTH, MU_EARTH, RADIUS_EARTH
 from sailviz.design import decay
 from sailviz.environment import atmosphere, ionosphere
 from sailviz.errors import Fault, SceneError
-from sailviz.propulsion.plasma_brake import force_per_length, spin_factor
-from sailviz.simulation.low_orbit import SPIN_AXES
+from sailviz.propulsion.plasma_brake import SPINNING, force_per_length
+from sailviz.simulation.steering import steering_of
 
 
 class QuasiCircular:
@@ -96,8 +96,9 @@ def _force(scene, inclination, bulge):
         if plasma.density_factor != 1.0:
             profile = profile.with_density(plasma.density_factor)
         profile = profile.extended()
-    if scene.steering is not None and scene.steering.kind == "spinning":
-        profile = profile.scaled(float(spin_factor(SPIN_AXES[scene.steering.plane])))
+    tether = steering_of(scene.steering).tether(scene.steering)
+    if tether.attitude == SPINNING:
+        profile = profile.scaled(tether.spin_factor)
     inner = profile.law
     return replace(profile, law=lambda h: inner(h + bulge), knots=tuple(knot - bulge for knot in profile.knots))
 

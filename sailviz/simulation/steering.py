@@ -1,78 +1,196 @@
-"""What a scene says of its steering, as numbers of the right-hand side."""
+"""What a scene says of its steering: one record for each kind, keyed by the class of its section.
+
+A new law: its formula in sailviz/steering, its section in scene/steering.py, its record here.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
+from sailviz import elements as orbital
 from sailviz import frames
 from sailviz.constants import AU, MU_SUN
 from sailviz.design.displaced.holding import Track
 from sailviz.errors import Fault, SceneError
+from sailviz.propagate.dynamics import Model
+from sailviz.propagate.primer_callback import observe_primer, primer_steering
+from sailviz.propulsion import plasma_brake
 from sailviz.propulsion.devices import sail
-from sailviz.steering import attitude as law
-from sailviz.steering import primers
+from sailviz.scene.start import CircularStart
+from sailviz.scene.steering import (
+    FrameSteering,
+    InertialSteering,
+    LocalSteering,
+    LyapunovSteering,
+    OptimalSteering,
+    PlainSteering,
+    PrimerSteering,
+    SmoothedSteering,
+    SpinningSteering,
+    TableSteering,
+)
+from sailviz.scene.values import Section
+from sailviz.simulation.lowered import (
+    Array,
+    Columns,
+    Flight,
+    LoweredSteering,
+    Switches,
+    Words,
+    no_columns,
+    no_words,
+)
+from sailviz.steering import attitude, primers
+from sailviz.words import angle
 
-if TYPE_CHECKING:
-    pass
-from sailviz.simulation.device import _sail_name, sail_strength
-
-
-def _steering(scene, design, position, velocity):
-    """(id, parameters, table or None, interpolation) for the right-hand side, and (time s, "thrust on" | "thrust off")
-    of every switch."""
-    steering = scene.steering
-    plain = (None, law.LINEAR, ())
-    if steering is None or scene.device.kind == "plasma-brake":  # a tether's attitude is among its device's numbers
-        return law.RADIAL, (), *plain
-    if steering.kind == "as designed" and isinstance(design, Track):
-        table = law.table(design.time - design.time[0], design.pitch, np.unwrap(design.clock), design.throttle, "cubic")
-        return law.TABLE_ORBITAL, (), table, law.CUBIC, ()
-    if steering.kind == "as designed":
-        if np.ndim(design.pitch) == 0 and design.pitch == 0:  # Sun-facing needs no orbit plane, and may have none
-            return law.RADIAL, (), *plain
-        return law.ORBITAL, law.direction_parameters(float(design.pitch), float(design.clock)), *plain
-    if steering.kind == "table":
-        table = law.table(steering.time, steering.pitch, steering.clock, steering.throttle, steering.interpolation)
-        kind = law.TABLE_ORBITAL if steering.frame == "orbital" else law.TABLE_MERIDIAN
-        return kind, (), table, law.INTERPOLATIONS[steering.interpolation], _throttled(steering)
-    if steering.kind == "optimal":
-        from sailviz.simulation.optimal_steering import primer_table
-
-        sail_of_law = steering.reckons_with or _sail_name(scene)
-        table, switches = primer_table(scene, position, velocity, sail_of_law, sail_strength(scene, design))
-        # the times of another sail's switches are not quite those of this flight
-        return law.PRIMER, (), table, law.CUBIC, switches if steering.reckons_with is None else ()
-    if steering.kind == "smoothed-transfer":
-        return law.TABLE_ORBITAL, (), _smoothed_table(scene), law.HOLD, ()
-    if steering.kind == "locally-optimal":
-        return law.LOCAL, (primers.GOALS[steering.goal], 1.0 if steering.sense == "increase" else -1.0), *plain
-    if steering.kind == "lyapunov":
-        return law.LYAPUNOV, (), _lyapunov_row(steering), law.LINEAR, ()
-    if steering.kind == "inertial":
-        return law.INERTIAL, tuple(frames.unit(steering.direction)), *plain
-    if steering.kind in ("orbital", "meridian"):
-        return law.LAWS[steering.kind], law.direction_parameters(steering.pitch, steering.clock), *plain
-    return law.LAWS[steering.kind], (), *plain
+S = TypeVar("S", bound=Section)
+SPIN_AXES = {"along-track": 0.0, "across-track": np.pi / 2}  # rad between the velocity and the plane of spin
 
 
-def _throttled(steering):
+class Tether(NamedTuple):
+    """How a plasma brake's tether lies."""
+
+    attitude: int = plasma_brake.VERTICAL
+    spin_factor: float = 1.0  # mean force of a spinning tether over that of one across the flow
+
+
+def _hanging(steering: Section) -> Tether:
+    return Tether()
+
+
+def _no_target(steering: Section) -> orbital.Elements | None:
+    return None
+
+
+@dataclass(frozen=True)
+class Steering(Generic[S]):
+    """A kind of steering."""
+
+    lower: Callable[[S, Flight], LoweredSteering]
+    words: Callable[[S, Any], Words] = no_words  # from the section and the scene's design
+    watches: Callable[[Model, Array, Array], Columns] = no_columns  # at times (n,) s and states (7, n)
+    tether: Callable[[S], Tether] = _hanging
+    target: Callable[[S], orbital.Elements | None] = _no_target  # the orbit that a law steers towards
+
+
+# ---------------------------------------------------------------- laws without parameters, and as designed
+def _plain(steering: PlainSteering, flight: Flight) -> LoweredSteering:
+    if steering.kind != "as designed":
+        return LoweredSteering(attitude.LAWS[steering.kind])
+    design = flight.design
+    if isinstance(design, Track):
+        time, clock = design.time - design.time[0], np.unwrap(design.clock)
+        table = attitude.table(time, design.pitch, clock, design.throttle, "cubic")
+        return LoweredSteering(attitude.TABLE_ORBITAL, table=table, interpolation=attitude.CUBIC)
+    if np.ndim(design.pitch) == 0 and design.pitch == 0:  # Sun-facing needs no orbit plane, and may have none
+        return LoweredSteering()
+    direction = attitude.direction_parameters(float(design.pitch), float(design.clock))
+    return LoweredSteering(attitude.ORBITAL, direction)
+
+
+def _plain_words(steering: PlainSteering, design: Any) -> Words:
+    if steering.kind != "as designed" or getattr(design.pitch, "ndim", 0) != 0:
+        return []
+    return [("pitch", angle(float(design.pitch)))]
+
+
+def _plain_tether(steering: PlainSteering) -> Tether:
+    return Tether(plasma_brake.TILTED if steering.kind == "gravity-gradient" else plasma_brake.VERTICAL)
+
+
+def _spinning_tether(steering: SpinningSteering) -> Tether:
+    return Tether(plasma_brake.SPINNING, float(plasma_brake.spin_factor(SPIN_AXES[steering.plane])))
+
+
+# ---------------------------------------------------------------- fixed angles, and tables of them
+def _frame(steering: FrameSteering, flight: Flight) -> LoweredSteering:
+    direction = attitude.direction_parameters(steering.pitch, steering.clock)
+    return LoweredSteering(attitude.LAWS[steering.kind], direction)
+
+
+def _inertial(steering: InertialSteering, flight: Flight) -> LoweredSteering:
+    return LoweredSteering(attitude.INERTIAL, attitude.Inertial(*frames.unit(steering.direction)))
+
+
+def _table(steering: TableSteering, flight: Flight) -> LoweredSteering:
+    rows = attitude.table(steering.time, steering.pitch, steering.clock, steering.throttle, steering.interpolation)
+    kind = attitude.TABLE_ORBITAL if steering.frame == "orbital" else attitude.TABLE_MERIDIAN
+    interpolation = attitude.INTERPOLATIONS[steering.interpolation]
+    return LoweredSteering(kind, table=rows, interpolation=interpolation, switches=_throttled(steering))
+
+
+def _throttled(steering: TableSteering) -> Switches:
     """(time s, word) of every row at which a table's throttle leaves 0 or comes to it."""
     on = np.array(steering.throttle or [1.0]) > 0
     rows = np.nonzero(on[1:] != on[:-1])[0] + 1
     return tuple((steering.time[i], "thrust on" if on[i] else "thrust off") for i in rows if steering.time[i] > 0)
 
 
-def _smoothed_table(scene):
-    """The steering table of a smoothed transfer from the start's circle; off once it has arrived."""
+# ---------------------------------------------------------------- towards a primer
+def _towards_primer(steering: PrimerSteering, flight: Flight, lowered: LoweredSteering) -> LoweredSteering:
+    """A law that follows a primer, and the sail with which it reckons."""
+    other = steering.reckons_with
+    steer_as = (flight.device.kind, flight.device.parameters) if other is None else sail(other, 1.0)
+    return lowered._replace(steer_as=steer_as, primer_kind=lowered.kind, callback=primer_steering())
+
+
+def _optimal(steering: OptimalSteering, flight: Flight) -> LoweredSteering:
+    from sailviz.simulation.optimal_steering import primer_table
+
+    sail_of_law = steering.reckons_with or flight.sail
+    rows, switches = primer_table(flight.scene, flight.position, flight.velocity, sail_of_law, flight.strength)
+    # the times of another sail's switches are not quite those of this flight
+    switches = switches if steering.reckons_with is None else ()
+    lowered = LoweredSteering(attitude.PRIMER, table=rows, interpolation=attitude.CUBIC, switches=switches)
+    return _towards_primer(steering, flight, lowered)
+
+
+def _local(steering: LocalSteering, flight: Flight) -> LoweredSteering:
+    sense = 1.0 if steering.sense == "increase" else -1.0
+    lowered = LoweredSteering(attitude.LOCAL, attitude.Local(primers.GOALS[steering.goal], sense))
+    return _towards_primer(steering, flight, lowered)
+
+
+def _lyapunov(steering: LyapunovSteering, flight: Flight) -> LoweredSteering:
+    """Targets, weights, scales and nearness of the law, as `primers.lyapunov_primer` reads them."""
+    a, e = steering.semi_major_axis, steering.eccentricity
+    longitude, tangent = steering.raan + steering.argument, np.tan(steering.inclination / 2)
+    p = a * (1 - e * e)
+    shape = (p, e * np.cos(longitude), e * np.sin(longitude))
+    plane = (tangent * np.cos(steering.raan), tangent * np.sin(steering.raan))
+    rows = np.array([*shape, *plane, *steering.weights, p, 1.0, 1.0, 1.0, 1.0, steering.within**2])
+    return _towards_primer(steering, flight, LoweredSteering(attitude.LYAPUNOV, table=rows))
+
+
+def _lyapunov_target(steering: LyapunovSteering) -> orbital.Elements:
+    s = steering
+    numbers = (s.semi_major_axis, s.eccentricity, s.inclination, s.raan, s.argument, 0.0)
+    return orbital.Elements(*map(np.float64, numbers))
+
+
+def _primer_columns(model: Model, time: Array, states: Array) -> Columns:
+    """The primer's direction, and the thrust that the law expects along it as a share of the full one."""
+    direction, support = observe_primer(time, states, model.parameters)
+    return {"primer_direction": direction, "switching_function": support}
+
+
+def _smoothed(steering: SmoothedSteering, flight: Flight) -> LoweredSteering:
+    """A smoothed transfer from the start's circle; off once it has arrived."""
     from sailviz.design.minimum_time.smoothed import smoothed_transfer
 
-    steering, r0, strength = scene.steering, scene.start.radius, sail_strength(scene, None)
+    scene, start = flight.scene, flight.scene.start
+    assert isinstance(start, CircularStart)  # these three, or the scene would not have been accepted
+    assert start.radius is not None
+    assert flight.strength is not None
+    r0 = start.radius
     clock = np.sqrt(r0**3 / MU_SUN)
     found = smoothed_transfer(
         steering.radius / r0,
-        strength * (AU / r0) * r0**2 / MU_SUN,
+        flight.strength * (AU / r0) * r0**2 / MU_SUN,
         np.array(steering.costates),
         scene.propagation.duration / clock,
         steering.hold / clock,
@@ -86,25 +204,24 @@ def _smoothed_table(scene):
     steps = len(found.pitch)
     time = found.time * clock / steps * np.arange(steps + 1)
     pitch, throttle = np.append(found.pitch, 0.0), np.append(found.throttle, 0.0)
-    return law.table(time, pitch, np.full(steps + 1, np.pi / 2), throttle, "hold")
+    rows = attitude.table(time, pitch, np.full(steps + 1, np.pi / 2), throttle, "hold")
+    return LoweredSteering(attitude.TABLE_ORBITAL, table=rows, interpolation=attitude.HOLD)
 
 
-def _lyapunov_row(steering):
-    """Targets, weights, scales and nearness of the law, as `primers.lyapunov_primer` reads them."""
-    a, e = steering.semi_major_axis, steering.eccentricity
-    longitude, tangent = steering.raan + steering.argument, np.tan(steering.inclination / 2)
-    p = a * (1 - e * e)
-    target = (p, e * np.cos(longitude), e * np.sin(longitude))
-    target += (tangent * np.cos(steering.raan), tangent * np.sin(steering.raan))
-    return np.array([*target, *steering.weights, p, 1.0, 1.0, 1.0, 1.0, steering.within**2])
+STEERINGS: dict[type[Section], Steering[Any]] = {  # the functions of each record take the class that it stands under
+    PlainSteering: Steering[PlainSteering](_plain, words=_plain_words, tether=_plain_tether),
+    SpinningSteering: Steering[SpinningSteering](lambda steering, flight: LoweredSteering(), tether=_spinning_tether),
+    FrameSteering: Steering[FrameSteering](_frame, words=lambda steering, design: [("pitch", angle(steering.pitch))]),
+    InertialSteering: Steering[InertialSteering](_inertial),
+    TableSteering: Steering[TableSteering](_table),
+    OptimalSteering: Steering[OptimalSteering](_optimal, watches=_primer_columns),
+    SmoothedSteering: Steering[SmoothedSteering](_smoothed),
+    LocalSteering: Steering[LocalSteering](_local, watches=_primer_columns),
+    LyapunovSteering: Steering[LyapunovSteering](_lyapunov, watches=_primer_columns, target=_lyapunov_target),
+}
+NO_STEERING = Steering[Any](lambda steering, flight: LoweredSteering())  # a sail faces the Sun, a tether hangs
 
 
-def _primer_law(scene, law_id, device, device_parameters):
-    """Keywords of `dynamics.model` for a law that follows a primer."""
-    if law_id not in (law.PRIMER, law.LOCAL, law.LYAPUNOV):
-        return {}
-    from sailviz.propagate.primer_callback import normal_plug
-
-    other = scene.steering.reckons_with
-    kind, parameters = (device, device_parameters) if other is None else sail(other, 1.0)
-    return {"steer_as": (kind, *parameters), "primer_kind": law_id, "primer_law": normal_plug()}
+def steering_of(steering: Section | None) -> Steering[Any]:
+    """The record of a scene's steering, or that of having none."""
+    return NO_STEERING if steering is None else STEERINGS[type(steering)]

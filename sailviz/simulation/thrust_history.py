@@ -46,7 +46,7 @@ class Schedule:
     factors: np.ndarray  # thrust over nominal thrust from each break on; a controller overwrites it as the run goes
     switches: tuple[tuple[float, str], ...]  # (time s, "thrust on" | "thrust off")
     histories: dict[str, np.ndarray] = field(default_factory=dict)  # column of the environment -> values
-    lines: np.ndarray | None = None  # (k, 8) what a controller knows at each break, see propagate.control_plug
+    lines: np.ndarray | None = None  # (k, 8) what a controller knows at each break, see propagate.voltage_callback
     law: np.ndarray | None = None  # the controller's row
 
 

@@ -7,6 +7,8 @@ frames as used for displaced orbits.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from sailviz.compiled import inlined
@@ -14,6 +16,7 @@ from sailviz.steering.optimal import analytic_pitch, optimal_pitch  # noqa: F401
 
 RADIAL, ORBITAL, MERIDIAN, TRANSVERSE, TANGENTIAL, INERTIAL, TABLE_ORBITAL, TABLE_MERIDIAN, USER = range(9)
 PRIMER, LOCAL, LYAPUNOV = range(9, 12)  # towards the most thrust along a primer: from a table, for an element, for all
+CALLED = 12  # a law of one's own, a C function called by its address, as are those three
 
 # name in a scene -> id; "radial" and "sun-facing" are one law under the words of two trades
 LAWS = {
@@ -30,9 +33,39 @@ LAWS = {
 }
 
 
-def direction_parameters(pitch, clock):
-    """(along r_hat, along t_hat, along h_hat) of a normal at fixed pitch and clock, rad: (3.6)-(3.8)."""
-    return (np.cos(pitch), np.sin(pitch) * np.sin(clock), np.sin(pitch) * np.cos(clock))
+class Components(NamedTuple):
+    """A unit vector in the orbital frame, or in the meridian frame."""
+
+    radial: float
+    transverse: float  # along t_hat, or towards increasing longitude
+    normal: float  # along h_hat, or towards the pole
+
+
+class Inertial(NamedTuple):
+    """A unit vector fixed in space."""
+
+    x: float
+    y: float
+    z: float
+
+
+class Local(NamedTuple):
+    """Which element the locally optimal law changes, and to which side."""
+
+    goal: int  # of primers.GOALS
+    sense: float  # 1 to increase it, -1 to decrease it
+
+
+class Table(NamedTuple):
+    """A steering table."""
+
+    rows: int = 0
+    interpolation: int = 0
+
+
+def direction_parameters(pitch: float, clock: float) -> Components:
+    """A normal at fixed pitch and clock, rad: (3.6)-(3.8)."""
+    return Components(np.cos(pitch), np.sin(pitch) * np.sin(clock), np.sin(pitch) * np.cos(clock))
 
 
 @inlined

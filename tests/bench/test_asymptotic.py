@@ -22,7 +22,7 @@ from sailviz.design.asymptotic import legs
 from sailviz.design.asymptotic import solution as asymptotic
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
-from sailviz.steering import attitude as law
+from sailviz.steering import attitude
 
 ACCURACY = 1e-4
 FILE = Path(__file__).parents[1] / "design" / "asymptotic" / "reference_asymptotic.json"
@@ -65,16 +65,16 @@ def numeric(case, tolerance, points=1):
     size, angle = np.hypot(case["er"], case["et"]), np.arctan2(case["et"], case["er"])
     if case["n"] == 0:
         model = dynamics.model(
-            mu, device=dynamics.THRUSTER, device_parameters=(case["et"], 0.0, 0.0), steering=law.TRANSVERSE
+            mu, device=dynamics.THRUSTER, device_parameters=(case["et"], 0.0, 0.0), steering=attitude.TRANSVERSE
         )
     elif case["n"] == 2:  # an ideal sail: cone and pitch are one
-        direction = law.direction_parameters(angle, np.pi / 2)
+        direction = attitude.direction_parameters(angle, np.pi / 2)
         strength = size / np.cos(angle) ** 2
         model = dynamics.model(
             mu,
             device=dynamics.SOLAR_SAIL,
             device_parameters=(strength, 0.0, 1.0, 0.0),
-            steering=law.ORBITAL,
+            steering=attitude.ORBITAL,
             steering_parameters=direction,
         )
     else:
@@ -88,8 +88,8 @@ def numeric(case, tolerance, points=1):
             mu,
             device=dynamics.ELECTRIC_SAIL,
             device_parameters=(ac, 0, np.pi / 2),
-            steering=law.ORBITAL,
-            steering_parameters=law.direction_parameters(pitch, np.pi / 2),
+            steering=attitude.ORBITAL,
+            steering_parameters=attitude.direction_parameters(pitch, np.pi / 2),
         )
     s = q3 + q1
     end = np.linspace(0, case["ref"]["t"] * unit / speed, points + 1)[1:]

@@ -20,7 +20,7 @@ from sailviz.environment.solar_wind.laws import Gamma
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
 from sailviz.propulsion import voltage_control as control
-from sailviz.steering import attitude as law
+from sailviz.steering import attitude
 from sailviz.uncertainty.ensembles import RandomWind, fly_ensemble, fly_factors
 
 FLIGHTS, DAYS, BATCH = 10_000, 730, 8
@@ -66,12 +66,12 @@ def plane(ends):
 
 def accurate(factors):
     """(n, 2) positions in au by the accurate integrator."""
-    direction = law.direction_parameters(PITCH, np.pi / 2)
+    direction = attitude.direction_parameters(PITCH, np.pi / 2)
     model = dynamics.model(
         1.0,
         device=dynamics.ELECTRIC_SAIL,
         device_parameters=(STRENGTH / AU, 0, 1),
-        steering=law.ORBITAL,
+        steering=attitude.ORBITAL,
         steering_parameters=direction,
     )
     end, day = np.array([DAYS * DAY / TU]), DAY / TU

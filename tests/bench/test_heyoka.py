@@ -15,7 +15,7 @@ import pytest
 from sailviz.constants import AU, GRAVITY_AT_1_AU
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
-from sailviz.steering import attitude as law
+from sailviz.steering import attitude
 
 heyoka = pytest.importorskip("heyoka")
 
@@ -29,8 +29,8 @@ STRENGTH = {"ideal sail": 0.05, "electric sail": 1e-3 / GRAVITY_AT_1_AU}  # ligh
 
 def our_model(sail):
     direction = {
-        "steering": law.ORBITAL,
-        "steering_parameters": law.direction_parameters(PITCH[sail], np.pi / 2),
+        "steering": attitude.ORBITAL,
+        "steering_parameters": attitude.direction_parameters(PITCH[sail], np.pi / 2),
     }
     if sail == "ideal sail":
         return dynamics.model(1.0, device=dynamics.SOLAR_SAIL, device_parameters=(STRENGTH[sail], 0, 1, 0), **direction)

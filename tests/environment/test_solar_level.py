@@ -10,9 +10,8 @@ from sailviz.environment.solar_level import constant, cycle, flux
 
 
 def at(parameters, years):
-    """F10.7 with the parameters somewhere inside a longer row, as the propagator keeps them."""
-    row = np.array([np.nan, np.nan, *parameters, np.nan])
-    return flux.py_func(years * YEAR, row, 2)
+    """F10.7 after a number of years."""
+    return flux.py_func(years * YEAR, parameters)
 
 
 def test_a_constant_sun_stays():

@@ -9,7 +9,7 @@ from scipy.integrate import quad, solve_ivp
 from sailviz.constants import AU
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import APSIS, END_OF_USE, ENERGY, NODE, RADIUS, RECORD, STOP, watch
-from sailviz.steering import attitude as law
+from sailviz.steering import attitude
 
 TURN = 2 * np.pi
 
@@ -28,7 +28,7 @@ def kepler(e, t):
     return np.stack([np.cos(anomaly) - e, np.sqrt(1 - e * e) * np.sin(anomaly)])
 
 
-def thruster(acceleration, steering=law.RADIAL, **more):
+def thruster(acceleration, steering=attitude.RADIAL, **more):
     return dynamics.model(
         1.0, device=dynamics.THRUSTER, device_parameters=(acceleration, 0.0, 0.0), steering=steering, **more
     )
@@ -40,8 +40,8 @@ def sail(lightness, pitch, clock):
         1.0,
         device=dynamics.SOLAR_SAIL,
         device_parameters=(lightness, 0.0, 1.0, 0.0),
-        steering=law.ORBITAL,
-        steering_parameters=law.direction_parameters(pitch, clock),
+        steering=attitude.ORBITAL,
+        steering_parameters=attitude.direction_parameters(pitch, clock),
     )
 
 
@@ -174,7 +174,7 @@ def test_steps_land_on_every_redraw(fly):
         1e-30,
         device=dynamics.THRUSTER,
         device_parameters=(0.1, 0, 0),
-        steering=law.INERTIAL,
+        steering=attitude.INERTIAL,
         steering_parameters=(0, 0, 1),
     )
     times = np.sort(rng.uniform(0, 10, 500))
@@ -188,12 +188,15 @@ def test_steps_land_on_every_redraw(fly):
 
 def test_held_table_turns_exactly_at_its_rows(fly):
     """A thruster that points along +z, then along -z: no step may see both rows of the table."""
-    table = law.table([0.0, 4.0, 6.0], [np.pi / 2] * 3, [0.0, np.pi, 0.0])
+    table = attitude.table([0.0, 4.0, 6.0], [np.pi / 2] * 3, [0.0, np.pi, 0.0])
     arguments = {
-        "device": dynamics.THRUSTER, "device_parameters": (0.01, 0, 0), "steering": law.TABLE_ORBITAL, "table": table
-    }  # fmt: skip
+        "device": dynamics.THRUSTER,
+        "device_parameters": (0.01, 0, 0),
+        "steering": attitude.TABLE_ORBITAL,
+        "table": table,
+    }
     flight = fly(
-        dynamics.model(1.0, interpolation=law.HOLD, **arguments),
+        dynamics.model(1.0, interpolation=attitude.HOLD, **arguments),
         *perihelion(0.2),
         [9.0],
         breaks=[0, 4, 6],
@@ -202,7 +205,7 @@ def test_held_table_turns_exactly_at_its_rows(fly):
     assert dop853.statistics(flight.integration)[1] == 0
     y, begin = np.concatenate(perihelion(0.2)), 0.0
     for end, clock in ((4.0, 0.0), (6.0, np.pi), (9.0, 0.0)):
-        model = thruster(0.01, law.ORBITAL, steering_parameters=law.direction_parameters(np.pi / 2, clock))
+        model = thruster(0.01, attitude.ORBITAL, steering_parameters=attitude.direction_parameters(np.pi / 2, clock))
         y, begin = fly(model, y[:3], y[3:], [end - begin]).states[:, 0], end
     assert np.abs(flight.states[:, 0] - y).max() < 1e-12
 
@@ -267,8 +270,8 @@ def test_radial_thrust_escapes_when_tsien_says(fly, a, radius, time, angle):
 def test_escape_by_transverse_and_tangential_thrust_agrees_with_published_integrations(fly):
     """Independent integrations at 1e-13 for a = 1e-2; no closed form exists, (2.21) and (2.26) are rough."""
     for steering, radius, time in (
-        (law.TRANSVERSE, 8.509256983, 76.118905570),
-        (law.TANGENTIAL, 8.779452316, 74.534367268),
+        (attitude.TRANSVERSE, 8.509256983, 76.118905570),
+        (attitude.TANGENTIAL, 8.779452316, 74.534367268),
     ):
         flight = fly(thruster(0.01, steering), times=[200.0], events=[(ENERGY, 0, 1, STOP)])
         ((_, t, y),) = flight.events
@@ -384,7 +387,9 @@ def test_a_pass_just_above_the_surface_is_no_impact(fly):
 
 def test_a_device_out_of_use_leaves_a_ballistic_flight(fly):
     """Transverse thrust until r = 1.5; from there on energy and angular momentum stay what they were."""
-    flight = fly(thruster(0.02, law.TRANSVERSE), times=np.linspace(0, 60, 601), events=[(RADIUS, 1.5, 1, END_OF_USE)])
+    flight = fly(
+        thruster(0.02, attitude.TRANSVERSE), times=np.linspace(0, 60, 601), events=[(RADIUS, 1.5, 1, END_OF_USE)]
+    )
     ((_, when, y),) = flight.events
     assert flight.status == dop853.DONE
     assert not dop853.in_use(flight.integration)
@@ -418,7 +423,7 @@ def test_mass_and_speed_obey_the_rocket_equation(fly):
         1e-30,
         device=dynamics.THRUSTER,
         device_parameters=(thrust, 1.0, 1 / exhaust),
-        steering=law.INERTIAL,
+        steering=attitude.INERTIAL,
         steering_parameters=(0, 1, 0),
     )
     times = np.linspace(0, 9, 91)
@@ -429,14 +434,18 @@ def test_mass_and_speed_obey_the_rocket_equation(fly):
 
 
 def test_constant_acceleration_burns_mass_exponentially(fly):
-    model = dynamics.model(1.0, device=dynamics.THRUSTER, device_parameters=(0.05, 0.0, 1 / 3), steering=law.TRANSVERSE)
+    model = dynamics.model(
+        1.0, device=dynamics.THRUSTER, device_parameters=(0.05, 0.0, 1 / 3), steering=attitude.TRANSVERSE
+    )
     times = np.linspace(0, 20, 21)
     flight = fly(model, times=times, mass=700.0, components=7)
     assert flight.states[6] == pytest.approx(700 * np.exp(-0.05 * times / 3), rel=1e-13)
 
 
 def test_running_out_of_propellant_ends_in_underflow_not_in_negative_mass(fly):
-    model = dynamics.model(1.0, device=dynamics.THRUSTER, device_parameters=(0.1, 1.0, 0.5), steering=law.TRANSVERSE)
+    model = dynamics.model(
+        1.0, device=dynamics.THRUSTER, device_parameters=(0.1, 1.0, 0.5), steering=attitude.TRANSVERSE
+    )
     flight = fly(model, times=np.linspace(0, 30, 31), mass=1.0, components=7)
     assert flight.status in (dop853.UNDERFLOW, dop853.NOT_FINITE)
     assert dop853.time(flight.integration) == pytest.approx(20.0, abs=1e-6)

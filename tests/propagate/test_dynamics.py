@@ -13,7 +13,7 @@ from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import APSIS, ENERGY, RECORD, STOP
 from sailviz.propulsion import electric_sail, solar_sail
 from sailviz.propulsion.solar_sail import FILMS
-from sailviz.steering import attitude as law
+from sailviz.steering import attitude
 
 DEG = np.pi / 180
 BEST = np.arctan(2**-0.5)  # the pitch of the largest transverse force of an ideal sail
@@ -136,8 +136,8 @@ def test_sail_flies_its_spiral(fly, name, lightness, pitch, final, time, angle):
         1.0,
         device=dynamics.SOLAR_SAIL,
         device_parameters=(lightness / film.total, film.b1, film.b2, film.b3),
-        steering=law.ORBITAL,
-        steering_parameters=law.direction_parameters(pitch, np.pi / 2),
+        steering=attitude.ORBITAL,
+        steering_parameters=attitude.direction_parameters(pitch, np.pi / 2),
     )
     flight = fly(model, *design.state(1.0, 0.0, 1.0), np.linspace(0, time, 801))
     theta = np.unwrap(np.arctan2(flight.states[1], flight.states[0]))
@@ -183,7 +183,7 @@ def test_sun_facing_sail_moves_as_under_reduced_gravity(fly, lightness):
 
 
 def radial(fly, a, events, duration=200.0):
-    model = dynamics.model(1.0, device=dynamics.THRUSTER, device_parameters=(a, 0, 0), steering=law.RADIAL)
+    model = dynamics.model(1.0, device=dynamics.THRUSTER, device_parameters=(a, 0, 0), steering=attitude.RADIAL)
     return fly(model, times=[duration], events=events)
 
 

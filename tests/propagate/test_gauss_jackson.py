@@ -7,11 +7,11 @@ import pytest
 
 from sailviz.constants import DAY, J2_EARTH, MU_EARTH, RADIUS_EARTH
 from sailviz.elements import state as state_on_orbit
-from sailviz.propagate import choice, dop853, dynamics, gauss_jackson
-from sailviz.propagate import parameters as row
+from sailviz.environment import atmosphere
+from sailviz.propagate import choice, dop853, dynamics, gauss_jackson, gauss_jackson_steps
 from sailviz.propagate.callbacks import user_address
 from sailviz.propagate.events import APSIS, END_OF_USE, NODE, RADIUS, RECORD, STOP, watch
-from sailviz.steering import attitude as law
+from sailviz.steering import attitude
 
 R0 = RADIUS_EARTH + 700e3
 J2_STRENGTH = 1.5 * J2_EARTH * MU_EARTH * RADIUS_EARTH**2
@@ -150,7 +150,7 @@ def test_rows_do_not_depend_on_the_block_size():
     times = np.linspace(0, 3 * DAY, 2000)
     events = [(APSIS, 0, 0, RECORD), (NODE, 0, 1, RECORD)]
     breaks, factors = np.arange(0, 3 * DAY, 9_000.0), np.arange(29) % 2
-    model = earth(air=AIR, device=dynamics.THRUSTER, device_parameters=(1e-5, 0, 0), steering=law.TANGENTIAL)
+    model = earth(air=AIR, device=dynamics.THRUSTER, device_parameters=(1e-5, 0, 0), steering=attitude.TANGENTIAL)
     arguments = (gauss_jackson, model, orbit(700e3, 0.01), times)
     whole = fly(*arguments, events=events, breaks=breaks, factors=factors)
     for block in (1, 7, 999):
@@ -173,7 +173,7 @@ def test_switched_thrust_agrees_with_dop853(spacing):
     """Closer than the points that a start needs, and wider."""
     breaks = np.arange(0, 2 * DAY, spacing)
     factors = np.cos(np.arange(len(breaks))) ** 2
-    model = earth(device=dynamics.THRUSTER, device_parameters=(1e-4, 0, 0), steering=law.TANGENTIAL)
+    model = earth(device=dynamics.THRUSTER, device_parameters=(1e-4, 0, 0), steering=attitude.TANGENTIAL)
     times = np.linspace(0, 2 * DAY, 1001)
     arguments = (model, orbit(700e3), times)
     states, *_ = fly(gauss_jackson, *arguments, breaks=breaks, factors=factors)
@@ -214,7 +214,7 @@ def test_events_are_those_of_dop853():
 
 
 def test_stop_and_end_of_use_happen_where_dop853_has_them():
-    parts = {"device": dynamics.THRUSTER, "device_parameters": (-3e-4, 0, 0), "steering": law.TANGENTIAL}
+    parts = {"device": dynamics.THRUSTER, "device_parameters": (-3e-4, 0, 0), "steering": attitude.TANGENTIAL}
     model = earth(air=AIR, surface_radius=RADIUS_EARTH, **parts)
     times = np.linspace(0, 20 * DAY, 4001)
     events = [(RADIUS, RADIUS_EARTH + 500e3, -1, END_OF_USE), (RADIUS, RADIUS_EARTH + 495e3, -1, STOP)]
@@ -260,7 +260,7 @@ def test_decay_to_200_km_shortens_the_step_and_agrees_with_dop853():
     assert [t for _, t, _ in found] == pytest.approx([t for _, t, _ in expected], abs=1e-2)
     assert ours.shape == theirs.shape
     assert apart(ours, theirs)[0] < 1e-9
-    assert gauss_jackson.step(s) < 0.95 * gauss_jackson.ANGLE / np.sqrt(MU_EARTH / (RADIUS_EARTH + 500e3) ** 3)
+    assert gauss_jackson.step(s) < 0.95 * gauss_jackson_steps.ANGLE / np.sqrt(MU_EARTH / (RADIUS_EARTH + 500e3) ** 3)
 
 
 # ---------------------------------------------------------------- where it does not apply
@@ -277,7 +277,7 @@ def test_a_force_that_is_not_finite_is_reported():
 
 
 def test_mass_loss_is_refused():
-    model = earth(device=dynamics.THRUSTER, device_parameters=(1e-4, 0, 1e-4), steering=law.TANGENTIAL)
+    model = earth(device=dynamics.THRUSTER, device_parameters=(1e-4, 0, 1e-4), steering=attitude.TANGENTIAL)
     with pytest.raises(ValueError, match="mass constant"):
         fly(gauss_jackson, model, orbit(700e3), [DAY])
 
@@ -293,13 +293,13 @@ def test_many_turns_of_a_low_orbit_are_left_to_the_multistep_method():
     assert chosen(low, orbit(700e3), 365, wanted="dop853").integrator == "dop853"
     assert chosen(low, orbit(700e3), 365, breaks=np.arange(0, 365 * DAY, 600.0)).integrator == "dop853"
     assert chosen(low, orbit(700e3), 1).reason == "15 revolutions are few"
-    tabled = earth(surface_radius=RADIUS_EARTH, air=(row.TABLED_AIR, 1.0), air_table=np.zeros(20))
+    tabled = earth(surface_radius=RADIUS_EARTH, air=(atmosphere.TABLED, 1.0), air_table=np.zeros(20))
     assert "tables" in chosen(tabled, orbit(700e3), 365).reason
     assert chosen(low, orbit(36_000e3), 3650).reason == "the orbit is not a low one"
 
 
 def test_what_the_multistep_method_cannot_do_is_refused_with_the_reason():
-    burning = earth(device=dynamics.THRUSTER, device_parameters=(1e-4, 0, 1e-4), steering=law.TANGENTIAL)
+    burning = earth(device=dynamics.THRUSTER, device_parameters=(1e-4, 0, 1e-4), steering=attitude.TANGENTIAL)
     position, velocity = orbit(700e3)
     for model, start, reason in (
         (burning, (position, velocity), "burns propellant"),

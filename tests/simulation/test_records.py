@@ -7,21 +7,42 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from sailviz.scene import environment, sections, start
+from sailviz.scene import device, environment, sections, start, steering
 from sailviz.scene.conflicts.steerings import STEERINGS as FITS
 from sailviz.scene.loading import load_scene
 from sailviz.scene.units_in_keys import words_of_kind
+from sailviz.scene.values import Section
 from sailviz.shipped import shipped_scenes
+from sailviz.simulation.device import DEVICES
 from sailviz.simulation.ensembles import STEERINGS
+from sailviz.simulation.environment import ENVIRONMENT
 from sailviz.simulation.events import EVENTS
 from sailviz.simulation.loop import simulate
 from sailviz.simulation.start import STARTS
+from sailviz.simulation.steering import STEERINGS as LAWS
 from sailviz.simulation.thrust_history import WINDS
 
 
-@pytest.mark.parametrize(("union", "records"), [(start.Start, STARTS), (environment.Winds, WINDS)])
+@pytest.mark.parametrize(
+    ("union", "records"),
+    [(start.Start, STARTS), (environment.Winds, WINDS), (steering.Steering, LAWS), (device.Devices, DEVICES)],
+)
 def test_each_kind_of_section_has_a_record(union, records):
     assert set(get_args(get_args(union)[0])) == set(records)
+
+
+def named_in(annotation):
+    """Every class of section named in a type, however deep in unions and annotations."""
+    if isinstance(annotation, type) and issubclass(annotation, Section):
+        yield annotation
+    for part in get_args(annotation):
+        yield from named_in(part)
+
+
+def test_each_kind_of_part_of_the_environment_has_a_record():
+    fields = environment.Environment.model_fields.values()
+    kinds = {kind for field in fields for kind in named_in(field.annotation)}
+    assert kinds == set(ENVIRONMENT)
 
 
 def test_each_kind_of_event_has_a_record():

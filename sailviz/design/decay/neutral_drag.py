@@ -93,7 +93,7 @@ def cycle_descent(
     cycle = solar_level.constant(f107) if f107 is not None else solar_level.cycle(year)
 
     def craft(time):
-        level = solar_level.flux.py_func(time, cycle, 0)
+        level = solar_level.flux.py_func(time, cycle)
         force = None if plasma is None else lambda altitude: plasma(altitude, level)
         given = setting(force, drag_area, lambda h: air(h, level), brake_floor, None, False, False)
         return craft_of(given, mass, length, start_altitude, end_altitude, drag_area)

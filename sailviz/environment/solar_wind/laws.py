@@ -12,6 +12,7 @@ from math import exp, lgamma
 import numpy as np
 
 
+@dataclass(frozen=True)
 class Law:
     """What all laws share. `name` is the word for it in `named`."""
 

@@ -99,6 +99,32 @@ class Series:
         return f"runs from {self.start.astype('datetime64[h]')} to {end.astype('datetime64[h]')}"
 
 
+def _repeated(seconds, pressure, repair):
+    """Which of increasing times repeat the one before. ValueError where the pressures differ, unless told to repair."""
+    again = np.diff(seconds, prepend=-np.inf) == 0
+    if again.any() and not repair:
+        before = np.roll(pressure, 1)
+        clash = again & (pressure != before) & ~(np.isnan(pressure) & np.isnan(before))
+        if clash.any():
+            raise ValueError(f"{clash.sum()} times come twice with different pressures (repair=True takes the first)")
+    return again
+
+
+def _on_even_steps(seconds, columns):
+    """(usual step s, columns with NaN at the times that were left out). ValueError for irregular times."""
+    step = float(np.median(np.diff(seconds)))
+    place = np.rint((seconds - seconds[0]) / step).astype(int)
+    off = np.abs(seconds - seconds[0] - place * step) / step
+    if off.max() > 0.01 or (np.diff(place) == 0).any():
+        raise ValueError(
+            f"times are not spaced evenly: the usual step is {step:g} s, some lie {off.max():.2g} steps off"
+        )
+    full = {name: np.full(place[-1] + 1, np.nan) for name in columns}
+    for name, x in columns.items():
+        full[name][place] = x
+    return step, full
+
+
 def series(time, pressure, speed=None, density=None, *, longest_gap=LONGEST_GAP, repair=False) -> Series:
     """A Series from columns (n,): time as datetime64 or s, pressure Pa, speed m/s, density 1/m3; NaN is missing.
 
@@ -126,27 +152,9 @@ def series(time, pressure, speed=None, density=None, *, longest_gap=LONGEST_GAP,
 
     reordered = int(np.sum(seconds < np.maximum.accumulate(seconds)))
     order = np.argsort(seconds, kind="stable")
-    seconds = seconds[order]
-    columns = {name: x[order] for name, x in columns.items()}
-    again = np.diff(seconds, prepend=-np.inf) == 0
-    if again.any() and not repair:
-        p = columns["pressure"]
-        clash = again & (p != np.roll(p, 1)) & ~(np.isnan(p) & np.isnan(np.roll(p, 1)))
-        if clash.any():
-            raise ValueError(f"{clash.sum()} times come twice with different pressures (repair=True takes the first)")
-    seconds, columns = seconds[~again], {name: x[~again] for name, x in columns.items()}
-
-    step = float(np.median(np.diff(seconds)))
-    place = np.rint((seconds - seconds[0]) / step).astype(int)
-    off = np.abs(seconds - seconds[0] - place * step) / step
-    if off.max() > 0.01 or (np.diff(place) == 0).any():
-        raise ValueError(
-            f"times are not spaced evenly: the usual step is {step:g} s, some lie {off.max():.2g} steps off"
-        )
-    full = {}
-    for name, x in columns.items():
-        full[name] = np.full(place[-1] + 1, np.nan)
-        full[name][place] = x
+    sorted_columns = {name: x[order] for name, x in columns.items()}
+    again = _repeated(seconds[order], sorted_columns["pressure"], repair)
+    step, full = _on_even_steps(seconds[order][~again], {name: x[~again] for name, x in sorted_columns.items()})
 
     measured = np.isfinite(full["pressure"])
     first, end = np.flatnonzero(measured)[[0, -1]] + (0, 1)
@@ -240,8 +248,7 @@ def read_omni(path, **options) -> Series:
     9999. and 99.99 taken as missing. options : those of `series`. ValueError names file and line of what is no such
     row.
     """
-    files = [path] if isinstance(path, (str, Path)) else list(path)
-    files = [Path(file) for file in files]
+    files = [Path(file) for file in ([path] if isinstance(path, (str, Path)) else path)]
     if len(files) == 1 and files[0].is_dir():
         files = sorted(files[0].glob("omni2_*.dat"))
     if not files:
@@ -264,8 +271,8 @@ def read_omni(path, **options) -> Series:
                     ) from None
                 hours.append(((year - 1970), (day - 1) * 24 + hour))
                 rows.append(row)
-    hours = np.array(hours, dtype=int).reshape(-1, 2)
-    time = hours[:, 0].astype("datetime64[Y]").astype("datetime64[h]") + hours[:, 1]
+    year_hour = np.array(hours, dtype=int).reshape(-1, 2)
+    time = year_hour[:, 0].astype("datetime64[Y]").astype("datetime64[h]") + year_hour[:, 1]
     values = np.array(rows).reshape(-1, len(OMNI_WORDS)).T
     columns = {}
     for (name, (_, fill, factor)), x in zip(OMNI_WORDS.items(), values, strict=True):

@@ -11,9 +11,9 @@ seed and its number alone, and blocks are added up in their order, so results do
 from __future__ import annotations
 
 from collections import deque
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from queue import SimpleQueue
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numba
 import numpy as np
@@ -29,7 +29,7 @@ from sailviz.propagate.ensemble.draws import (
     uniform,
 )
 from sailviz.propagate.ensemble.motion import MERIDIAN, PLANE, step_in_plane, step_in_space
-from sailviz.propulsion import voltage_control as law
+from sailviz.propulsion import voltage_control
 
 BLOCK = 1024  # flights that march together: state rows stay in the second-level cache, histograms are met while hot
 BINS = 1024  # of a histogram, over twice the range of the first block: 0.2 % of that range each
@@ -89,7 +89,8 @@ class Swarm(NamedTuple):
 
 
 # sums over lanes may be taken in any order that the compiler fixes: the order is the same in every run
-_summing = numba.njit(_nrt=False, forceinline=True, **{**_OPTIONS, "fastmath": {"contract", "nsz", "reassoc"}})
+_REORDERED: dict[str, Any] = {**_OPTIONS, "fastmath": {"contract", "nsz", "reassoc"}, "_nrt": False}
+_summing = numba.njit(forceinline=True, **_REORDERED)
 
 
 @_summing
@@ -118,9 +119,9 @@ def _observe(s, used, o, reference, c, record, moments, low, width, counts):
             if a < 6 or a == b:
                 m[place] += _mean_product(s[a], s[b], reference[o, a], reference[o, b], used)
                 place += 1
-    if c[law.KIND] != law.CONSTANT:
+    if c[voltage_control.KIND] != voltage_control.CONSTANT:
         for i in range(used):
-            m[place] += s[VOLTAGE, i] >= c[law.MAXIMUM]
+            m[place] += s[VOLTAGE, i] >= c[voltage_control.MAXIMUM]
     if counts.shape[0] > 0:
         for a in range(SEEN):
             if width[o, a] > 0.0:
@@ -162,19 +163,19 @@ def _control(s, lanes, aim_r, aim_u, frame, c):
             z = s[HEIGHT, i]
             size = np.sqrt(r * r + z * z)
             u, r = (r * u + z * s[W, i]) / size, size
-        s[VOLTAGE, i] = law.voltage(s[VOLTAGE, i], s[PRESSURE, i], np.nan, r, u, aim_r, aim_u, c)
+        s[VOLTAGE, i] = voltage_control.voltage(s[VOLTAGE, i], s[PRESSURE, i], np.nan, r, u, aim_r, aim_u, c)
 
 
 @inlined
 def _drive(s, lanes, c, response):
     """Thrust factors from wind and voltage."""
     if response == LINEAR:
-        inverse = 1.0 / c[law.P_REF]
+        inverse = 1.0 / c[voltage_control.P_REF]
         for i in range(lanes):
             s[FACTOR, i] = s[PRESSURE, i] * inverse
     else:
         for i in range(lanes):
-            s[FACTOR, i] = law.thrust_factor(s[VOLTAGE, i], s[PRESSURE, i], c[law.WIND], c)
+            s[FACTOR, i] = voltage_control.thrust_factor(s[VOLTAGE, i], s[PRESSURE, i], c[voltage_control.WIND], c)
 
 
 @compiled
@@ -229,9 +230,9 @@ def fly_block(
         for i in range(lanes):
             s[SUM_FACTOR, i] += span[n] * s[FACTOR, i]
             s[SUM_VOLTAGE, i] += span[n] * s[VOLTAGE, i]
-        if c[law.KIND] != law.CONSTANT:
+        if c[voltage_control.KIND] != voltage_control.CONSTANT:
             for i in range(lanes):
-                s[SUM_SATURATED, i] += span[n] if s[VOLTAGE, i] >= c[law.MAXIMUM] else 0.0
+                s[SUM_SATURATED, i] += span[n] if s[VOLTAGE, i] >= c[voltage_control.MAXIMUM] else 0.0
     for i in range(used):
         for a in range(6):
             end[i, a] = s[a, i]
@@ -265,7 +266,7 @@ def fly(plan: Plan, wind: Wind, control, reference, flights, threads=1, progress
     low, width = least - 0.5 * (most - least), 2.0 * (most - least) / BINS
     end, mean = np.empty((flights, 6)), np.empty((flights, 3))
     total = np.zeros((outputs, MOMENTS))
-    shelf = SimpleQueue()  # of histograms, one for each thread
+    shelf: SimpleQueue[np.ndarray[Any, Any]] = SimpleQueue()  # of histograms, one for each thread
     for _ in range(threads):
         shelf.put(np.zeros((outputs, SEEN, BINS), np.int32))
     nothing = np.empty((0, outputs, SEEN))
@@ -281,7 +282,8 @@ def fly(plan: Plan, wind: Wind, control, reference, flights, threads=1, progress
         return moments
 
     with ThreadPoolExecutor(threads) as pool:
-        waiting, ahead = deque(), iter(range(0, flights, BLOCK))
+        waiting: deque[Future[np.ndarray[Any, Any]]] = deque()
+        ahead = iter(range(0, flights, BLOCK))
         done = 0
         while True:
             while len(waiting) < 2 * threads and (first := next(ahead, None)) is not None:
@@ -292,7 +294,9 @@ def fly(plan: Plan, wind: Wind, control, reference, flights, threads=1, progress
             done = min(done + BLOCK, flights)
             if progress:
                 progress(done)
-    counts = sum(shelf.get().astype(np.int64) for _ in range(threads))
+    counts = np.zeros((outputs, SEEN, BINS), np.int64)
+    for _ in range(threads):
+        counts += shelf.get()
     return Swarm(total, counts, low, width, head.record, end, mean)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from sailviz.propagate.ensemble.draws import GIVEN
 from sailviz.propagate.ensemble.flights import HEIGHT, LANES, RHO, THETA, Plan, U, W, Wind, record_flights
-from sailviz.propulsion import voltage_control as law
+from sailviz.propulsion import voltage_control
 
 SAME = 1e-10  # of the duration: times closer than this are one
 STEP = 0.02  # first guess of a step, in units of sqrt(r^3 / mu): 1.2 days at 1 au
@@ -82,10 +82,10 @@ def calm(pressure):
 def nominal(plan: Plan, control):
     """States (segments + 1, 6) of the flight with thrust factor 1 at the edges of all segments."""
     steady = control.copy()
-    steady[law.KIND] = law.CONSTANT
-    steady[law.POWER] = 0.0
+    steady[voltage_control.KIND] = voltage_control.CONSTANT
+    steady[voltage_control.POWER] = 0.0
     everywhere = plan._replace(output=np.arange(len(plan.span) + 1))
-    return record_flights(everywhere, calm(control[law.P_REF]), steady, 1).record[0, :, :6]
+    return record_flights(everywhere, calm(control[voltage_control.P_REF]), steady, 1).record[0, :, :6]
 
 
 def distance(states):

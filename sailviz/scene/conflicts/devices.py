@@ -109,6 +109,8 @@ DEVICES: dict[type[Section], DeviceFits[Any]] = {  # the functions of each recor
     NoDevice: DeviceFits[NoDevice](decays=True),
 }
 
+OTHER_DEVICE = DeviceFits[Any]()  # a device that says nothing here goes with every start and every steering
+
 
 @dataclass(frozen=True)
 class ControlFits(Generic[C]):

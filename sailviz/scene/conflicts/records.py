@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from sailviz.scene.conflicts.devices import DEVICES, DeviceFits
+from sailviz.scene.conflicts.devices import DEVICES, OTHER_DEVICE, DeviceFits
 from sailviz.scene.conflicts.starts import STARTS, StartFits
-from sailviz.scene.conflicts.steerings import NO_STEERING, STEERINGS, SteeringFits
+from sailviz.scene.conflicts.steerings import NO_STEERING, OTHER_STEERING, STEERINGS, SteeringFits
 from sailviz.scene.conflicts.surroundings import ATMOSPHERES, IONOSPHERES, LayerFits
 
 if TYPE_CHECKING:
@@ -22,12 +22,12 @@ def start_of(scene: Scene) -> StartFits[Any]:
 
 def device_of(scene: Scene) -> DeviceFits[Any]:
     """Facts of the scene's kind of device."""
-    return DEVICES[type(scene.device)]
+    return DEVICES.get(type(scene.device), OTHER_DEVICE)
 
 
 def steering_of(scene: Scene) -> SteeringFits[Any]:
     """Facts of the scene's kind of steering, or of having none."""
-    return NO_STEERING if scene.steering is None else STEERINGS[scene.steering.kind]
+    return NO_STEERING if scene.steering is None else STEERINGS.get(scene.steering.kind, OTHER_STEERING)
 
 
 def ionosphere_of(scene: Scene) -> LayerFits:

@@ -123,4 +123,5 @@ STEERINGS: dict[str, SteeringFits[Any]] = {  # the functions of each record take
     "locally-optimal": SteeringFits[LocalSteering](primer=True, frame=_frame_of_goal, ensemble=_alone),
     "lyapunov": SteeringFits[LyapunovSteering](primer=True, frame=_orbital, ensemble=_alone),
 }
+OTHER_STEERING = SteeringFits[Any](ensemble=_alone)  # a law that says nothing here points whatever pushes
 NO_STEERING = SteeringFits[Any](directs=False, tether=True, in_plane=always)  # a sail faces the Sun, a tether hangs

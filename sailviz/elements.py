@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 CIRCULAR = 1e-11  # eccentricity below which the apse line is rounding noise
+Numbers: TypeAlias = Any  # (n,) float64, or one number: of the shape that the state had
 EQUATORIAL = 1e-11  # sine of the inclination below which the node is rounding noise
 
 
@@ -20,12 +21,12 @@ class Elements:
     eccentricity, inclination, raan (right ascension or longitude of the ascending node), argument (of periapsis),
     true_anomaly rad."""
 
-    semi_major_axis: np.ndarray | float
-    eccentricity: np.ndarray | float
-    inclination: np.ndarray | float
-    raan: np.ndarray | float
-    argument: np.ndarray | float
-    true_anomaly: np.ndarray | float
+    semi_major_axis: Numbers
+    eccentricity: Numbers
+    inclination: Numbers
+    raan: Numbers
+    argument: Numbers
+    true_anomaly: Numbers
 
 
 def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements:

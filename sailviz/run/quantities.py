@@ -78,7 +78,8 @@ def _acted(name: str) -> Value:
 
 def _mean_altitude(run: Run) -> np.ndarray:
     """Without the swing that an oblate planet gives it, where the run knows that; else of the semi-major axis."""
-    return run.environment.get("mean_altitude_m", run.elements.semi_major_axis - run.setting.body.radius)
+    osculating: np.ndarray = run.elements.semi_major_axis - run.setting.body.radius
+    return run.environment.get("mean_altitude_m", osculating)
 
 
 def _radial_speed(run: Run) -> np.ndarray:

@@ -58,6 +58,7 @@ def planet_following(scene: Scene, start: PlanetFollowingStart) -> Track:
     if start.planet is not None:
         a, e, *_ = (float(value[0]) for value in ephemeris.planet_elements(start.planet.capitalize(), 0.0))
     assert a is not None  # the section gives the planet, or both
+    assert e is not None
     device = _sail(scene)
     period = 2 * np.pi * np.sqrt(a**3 / MU_SUN)
     return _whole_track(

@@ -176,7 +176,9 @@ class SystemView:
         """Whether the time since the row before is so long that a curve through both would miss the orbit. (n,)"""
         e = run.elements
         with np.errstate(invalid="ignore"):
-            return (e.eccentricity < 1) & (gaps > GAP * 2 * np.pi * np.sqrt(e.semi_major_axis**3 / self._frame.mu))
+            turn = 2 * np.pi * np.sqrt(e.semi_major_axis**3 / self._frame.mu)
+            wide: np.ndarray = (e.eccentricity < 1) & (gaps > GAP * turn)
+            return wide
 
     def _ramp(self, samples: Samples, factor: float = 1.0) -> np.ndarray:
         """Colours (n,) by altitude, HIGH at the start to LOW on the ground; the root because a descent ends fast."""

@@ -75,8 +75,8 @@ def nearest(word: str, words: Iterable[str]) -> str:
     low = {w.lower(): w for w in words}
     close = get_close_matches(str(word).lower(), low, n=1, cutoff=0.6) if len(str(word)) <= LONGEST_WORD else []
     if close:
-        return f'Did you mean "{low[close[0]]}"?'
-    return f"Allowed: {', '.join(words)}." if len(words) <= 24 else ""
+        return f'Did you mean "{shortened(low[close[0]])}"?'
+    return f"Allowed: {', '.join(shortened(w) for w in words)}." if len(words) <= 24 else ""
 
 
 def shown(value: object) -> str:
@@ -85,6 +85,11 @@ def shown(value: object) -> str:
         text = f'"{_printable(value)}"' if isinstance(value, str) else repr(value)
     except ValueError:  # Python writes no number of more than 4300 digits
         return "a number of thousands of digits"
+    return shortened(text)
+
+
+def shortened(text: str) -> str:
+    """Text as long as a message bears it."""
     return text if len(text) <= 60 else text[:57] + "..."
 
 

@@ -525,6 +525,11 @@ LONG_WORDS = [
 ]
 
 
+ELECTRIC = {"kind": "electric-sail", "characteristic_acceleration_mm_s2": 1}
+AMONG_LONG = [{**MASS, "at": "end", "ensemble": "calm", "statistic": "mean"}]
+LONG_WORDS.append(with_parts(device=ELECTRIC, ensemble=[{"name": LONG}], expect=AMONG_LONG))
+
+
 @pytest.mark.parametrize("raw", LONG_WORDS, ids=range(len(LONG_WORDS)))
 def test_long_words_are_shortened_in_messages_and_cost_no_time(raw):
     with pytest.raises(SceneError) as caught:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Generic, TypeVar
 
 import numpy as np
 
@@ -11,25 +11,25 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 CIRCULAR = 1e-11  # eccentricity below which the apse line is rounding noise
-Numbers: TypeAlias = Any  # (n,) float64, or one number: of the shape that the state had
 EQUATORIAL = 1e-11  # sine of the inclination below which the node is rounding noise
+Number = TypeVar("Number", bound=np.ndarray | float, covariant=True)  # columns (n,), or one of each
 
 
 @dataclass(frozen=True)
-class Elements:
+class Elements(Generic[Number]):
     """Classical elements, each (n,) or scalar: semi_major_axis m (negative on a hyperbola, inf on a parabola),
     eccentricity, inclination, raan (right ascension or longitude of the ascending node), argument (of periapsis),
     true_anomaly rad."""
 
-    semi_major_axis: Numbers
-    eccentricity: Numbers
-    inclination: Numbers
-    raan: Numbers
-    argument: Numbers
-    true_anomaly: Numbers
+    semi_major_axis: Number
+    eccentricity: Number
+    inclination: Number
+    raan: Number
+    argument: Number
+    true_anomaly: Number
 
 
-def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements:
+def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements[np.ndarray]:
     """Osculating elements of a state. position m, velocity m/s : (..., 3), mu m3/s2.
 
     Conventions where an angle loses its meaning: on an equatorial orbit the node is the x axis (raan 0), on a

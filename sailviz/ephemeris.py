@@ -142,7 +142,7 @@ def _de421(name: str, seconds: np.ndarray) -> np.ndarray:
     return np.column_stack([x, c * y + s * z, c * z - s * y])
 
 
-def planet_ellipse(name: str, epoch: Epoch | None = None) -> Elements:
+def planet_ellipse(name: str, epoch: Epoch | None = None) -> Elements[float]:
     """The planet's orbit as mean elements at the epoch (J2000 without one), scalars; the true anomaly is left 0."""
     seconds = 0.0 if epoch is None else seconds_since_j2000(epoch)
     a, e, i, raan, argument, _ = planet_elements(name, seconds)

@@ -178,7 +178,7 @@ class Run:
     mass: np.ndarray  # (n,) kg; 1 where the scene gives no mass, so that forces are accelerations
     attitude: Attitude
     thrust: Thrust
-    elements: Elements
+    elements: Elements[np.ndarray]
     environment: dict[str, np.ndarray]  # name with unit -> (n,) or (n, 3), e.g. "thrust_factor", "plasma_force_N_m"
     bodies: dict[str, np.ndarray]  # name -> (n, 3) m from the central body, e.g. "Earth", or "Sun" seen from the Earth
     approximations: dict[str, np.ndarray] = field(default_factory=dict)  # name -> (n, 3) m, another answer to the same

@@ -66,7 +66,7 @@ def _closed_form_error(run: Run) -> np.ndarray:
     raise TypeError("the error against a closed form takes the closed form too: expectations.py knows it")
 
 
-def _above_surface(distance: Callable[[Elements], np.ndarray]) -> Value:
+def _above_surface(distance: Callable[[Elements[np.ndarray]], np.ndarray]) -> Value:
     """Of a length from the centre as a function of the elements, its height over the central body's radius."""
     return lambda run: distance(run.elements) - run.setting.body.radius
 

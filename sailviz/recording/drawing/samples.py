@@ -96,7 +96,7 @@ def unit_of(setting: Setting, distance: float) -> tuple[float, str]:
     return 10.0**power, f"10^{power} m"
 
 
-def longitude(elements: Elements) -> np.ndarray:
+def longitude(elements: Elements[np.ndarray]) -> np.ndarray:
     """True longitude, rad: smooth where an orbit is circular or equatorial, which its parts are not."""
     angle: np.ndarray = elements.raan + elements.argument + elements.true_anomaly
     return angle

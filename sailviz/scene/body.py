@@ -1,7 +1,5 @@
 """The body that the craft flies round, and the orbit that it is meant to reach."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator

@@ -1,7 +1,5 @@
 """What pushes a craft: the kinds of [device]."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator

@@ -1,7 +1,5 @@
 """What surrounds a craft: [environment] and the kinds inside it."""
 
-from __future__ import annotations
-
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator

@@ -3,8 +3,6 @@
 Imports neither rerun nor numba nor scipy, so that `sailviz check` answers at once.
 """
 
-from __future__ import annotations
-
 from typing import Annotated, Literal, Self, get_args
 
 from pydantic import Field, model_validator

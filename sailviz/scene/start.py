@@ -1,7 +1,5 @@
 """Where a craft starts: the kinds of [start]."""
 
-from __future__ import annotations
-
 from math import acos, cos, degrees
 from typing import Annotated, Literal, Self
 

@@ -1,7 +1,5 @@
 """How a craft is steered: the kinds of [steering]."""
 
-from __future__ import annotations
-
 from math import hypot
 from typing import Annotated, Literal, Self
 

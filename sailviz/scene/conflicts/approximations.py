@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.records import device_of, start_of, steering_of
@@ -19,8 +18,7 @@ if TYPE_CHECKING:
 A = TypeVar("A", bound=Section)
 
 
-@dataclass(frozen=True)
-class ApproximationFits(Generic[A]):
+class ApproximationFits(NamedTuple, Generic[A]):
     """Facts of a kind of approximation. Functions take a section of the kind."""
 
     name: Callable[[A], str]

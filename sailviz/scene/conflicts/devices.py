@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from sailviz.scene.conflicts.answers import Faults, never, no_sentences, nothing, unknown
 from sailviz.scene.device import (
@@ -29,8 +28,7 @@ C = TypeVar("C", bound=Section)
 STEEPEST = pi / 2  # rad, where a sail shows its edge
 
 
-@dataclass(frozen=True)
-class DeviceFits(Generic[D]):
+class DeviceFits(NamedTuple, Generic[D]):
     """Facts of a kind of device. Functions take a section of the kind."""
 
     sail: bool = False  # pushed by the Sun, steered by pitch and clock angle
@@ -112,8 +110,7 @@ DEVICES: dict[type[Section], DeviceFits[Any]] = {  # the functions of each recor
 OTHER_DEVICE = DeviceFits[Any]()  # a device that says nothing here goes with every start and every steering
 
 
-@dataclass(frozen=True)
-class ControlFits(Generic[C]):
+class ControlFits(NamedTuple, Generic[C]):
     """Facts of a kind of control. Functions take a section of the kind."""
 
     voltage: bool = False  # sets an electric sail's; else how a solar sail answers to sunlight that varies

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.devices import CONTROLS
@@ -22,8 +21,7 @@ if TYPE_CHECKING:
 M = TypeVar("M", bound=ManyFlights)
 
 
-@dataclass(frozen=True)
-class EnsembleFits(Generic[M]):
+class EnsembleFits(NamedTuple, Generic[M]):
     """Facts of a way to fly many."""
 
     draws: Callable[[Scene, M, str], Faults]  # what keeps one, at a place, from its winds or sunshine

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import inf, pi
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from sailviz.constants import RADIUS_EARTH
 from sailviz.scene.conflicts import start_points
@@ -35,8 +34,7 @@ def nowhere(scene: Scene, start: Section) -> None:
     """Starts of this kind do not say, or have no need to."""
 
 
-@dataclass(frozen=True)
-class StartFits(Generic[S]):
+class StartFits(NamedTuple, Generic[S]):
     """Facts of a kind of start. Functions take a section of the kind."""
 
     held: bool = False  # an orbit that a sail is designed to hold

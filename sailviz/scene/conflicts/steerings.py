@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING, Any, Generic, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from sailviz.scene.conflicts.answers import Faults, always, never, no_angles, no_sentences, nothing
 from sailviz.scene.conflicts.starts import STARTS
@@ -31,8 +30,7 @@ if TYPE_CHECKING:
 S = TypeVar("S", bound=Section)
 
 
-@dataclass(frozen=True)
-class SteeringFits(Generic[S]):
+class SteeringFits(NamedTuple, Generic[S]):
     """Facts of a kind of steering. Functions take a section of the kind."""
 
     directs: bool = True  # says where a thruster pushes

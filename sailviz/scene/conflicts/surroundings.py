@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from sailviz.scene.conflicts.answers import Faults, never, nothing, unknown
 from sailviz.scene.environment import (
@@ -29,8 +28,7 @@ P = TypeVar("P", bound=Section)
 SERIES_STEP = 3600.0  # s, of a measured wind
 
 
-@dataclass(frozen=True)
-class VariesFits(Generic[P]):
+class VariesFits(NamedTuple, Generic[P]):
     """Facts of a kind of solar wind or irradiance. Functions take a section of the kind."""
 
     steady: bool = False
@@ -66,8 +64,7 @@ IRRADIANCES: dict[type[Section], VariesFits[Any]] = {
 }
 
 
-@dataclass(frozen=True)
-class LayerFits:
+class LayerFits(NamedTuple):
     """Facts of a kind of ionosphere or atmosphere."""
 
     density: bool = True  # known, not only the force that comes of it

@@ -7,6 +7,8 @@ check` answers at once.
 
 from __future__ import annotations
 
+import gc
+import os
 from importlib import import_module
 
 import click
@@ -29,6 +31,12 @@ COMMANDS = {  # name, which is also that of the module -> function there
     "view": "view",
     "web": "web",
 }
+
+
+# Building the sections of a scene makes very many objects that stay: looking for garbage among them again and again,
+# and for plugins of pydantic in every installed package, is about a tenth of the time of `check`.
+os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
+gc.set_threshold(200_000, 50, 50)
 
 
 class Verbs(click.Group):

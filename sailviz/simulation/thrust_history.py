@@ -106,7 +106,7 @@ class _Weather:
 
 
 def control_row(law: PressureControl | DistanceControl | None, scene: Scene, reference: float) -> np.ndarray:
-    """The row of propagate.control for a controller of the scene's craft, None for constant voltage; reference Pa."""
+    """The row of `voltage_control` for a controller of the scene's craft, None for constant voltage; reference Pa."""
     potential = _potential(scene)
     if law is None:
         nominal = _voltage(scene)

@@ -33,8 +33,8 @@ MILLION = """
 import json, resource, time
 import numpy as np
 from sailviz.constants import AU, DAY, MU_SUN
-from sailviz.environment.wind_laws import Gamma
-from sailviz.propagate import control
+from sailviz.environment.solar_wind.laws import Gamma
+from sailviz.propulsion import voltage_control as control
 from sailviz.uncertainty.ensembles import RandomWind, fly_ensemble
 
 def fly(flights):

@@ -255,9 +255,9 @@ def record_flights(plan: Plan, wind: Wind, control, flights, reference=None):
 
 
 def fly(plan: Plan, wind: Wind, control, reference, flights, threads=1, progress=None) -> Swarm:
-    """Fly an ensemble. control : row of `sailviz.propagate.control`, its MU in the units of the plan; reference
-    (outputs, SEEN) : values near the means, subtracted before squares are summed. progress : called with the number of
-    flights done."""
+    """Fly an ensemble. control : row of `sailviz.propulsion.voltage_control`, its MU in the units of the plan;
+    reference (outputs, SEEN) : values near the means, subtracted before squares are summed. progress : called with the
+    number of flights done."""
     outputs = len(reference)
     head = record_flights(plan, wind, control, min(flights, BLOCK), reference)
     if flights <= BLOCK:

@@ -6,13 +6,12 @@ once.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from sailviz import ephemeris
+from sailviz import ephemeris, two_body
 from sailviz.run.arrays import Run
 
 Motion = Callable[[np.ndarray], np.ndarray]  # times (n,) s after the first row -> positions (n, 3) m
@@ -22,52 +21,29 @@ def kepler(start: Run) -> Motion:
     """A conic round the central body: flight without thrust.
 
     Ellipses by Lagrange's f and g in differences of the eccentric anomaly, which holds over many turns; parabolas,
-    hyperbolas and what is close to them by universal variables. Source: Battin, An Introduction to the Mathematics and
-    Methods of Astrodynamics (1999), sections 4.4-4.5, not read but re-derived.
+    hyperbolas and what is close to them by universal variables, in two_body.py. Source: Battin, An Introduction to the
+    Mathematics and Methods of Astrodynamics (1999), section 4.4, not read but re-derived.
     """
     r_vec, v_vec, mu = start.position[0], start.velocity[0], start.setting.body.mu
     r, sigma = np.linalg.norm(r_vec), r_vec @ v_vec / np.sqrt(mu)
     alpha = 2 / r - v_vec @ v_vec / mu  # 1 / a
 
-    def ellipse(time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def ellipse(time: np.ndarray) -> np.ndarray:
         a = 1 / alpha
         e_cos, e_sin = 1 - r / a, sigma / np.sqrt(a)
         e, first = np.hypot(e_cos, e_sin), np.arctan2(e_sin, e_cos)
         anomaly = ephemeris.eccentric_anomaly(first - e_sin + np.sqrt(mu / a**3) * time, e)
         c, s = np.cos(anomaly - first), np.sin(anomaly - first)
-        return 1 - a / r * (1 - c), a * sigma / np.sqrt(mu) * (1 - c) + r * np.sqrt(a / mu) * s
+        f = 1 - a / r * (1 - c)
+        g = a * sigma / np.sqrt(mu) * (1 - c) + r * np.sqrt(a / mu) * s
+        place: np.ndarray = f[:, None] * r_vec + g[:, None] * v_vec
+        return place
 
-    def universal(time: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        x, due = np.sqrt(mu) * time / r, np.sqrt(mu) * time
-        for _ in range(60):  # Laguerre's method of order 5, which converges from anywhere
-            c2, c3 = _stumpff(alpha * x * x)
-            miss = sigma * x * x * c2 + (1 - alpha * r) * x**3 * c3 + r * x - due
-            slope = sigma * x * (1 - alpha * x * x * c3) + (1 - alpha * r) * x * x * c2 + r
-            bend = sigma * (1 - alpha * x * x * c2) + (1 - alpha * r) * x * (1 - alpha * x * x * c3)
-            x = x - 5 * miss / (slope + np.sqrt(np.abs(16 * slope * slope - 20 * miss * bend)))
-        c2, c3 = _stumpff(alpha * x * x)
-        return 1 - x * x * c2 / r, sigma * x * x * c2 / np.sqrt(mu) + r * x * (1 - alpha * x * x * c3) / np.sqrt(mu)
+    def any_conic(time: np.ndarray) -> np.ndarray:
+        rows = len(time)
+        return two_body.advance(np.tile(r_vec, (rows, 1)), np.tile(v_vec, (rows, 1)), time, mu)[0]
 
-    solution = ellipse if alpha * r > 0.05 else universal
-
-    def motion(time: np.ndarray) -> np.ndarray:
-        f, g = solution(time)
-        return f[:, None] * r_vec + g[:, None] * v_vec
-
-    return motion
-
-
-def _stumpff(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(1 - cos sqrt z) / z and (sqrt z - sin sqrt z) / sqrt z^3, and what they become for z <= 0. (n,) -> two (n,)"""
-    q = np.sqrt(np.maximum(np.abs(z), 1e-300))
-    with np.errstate(over="ignore", invalid="ignore"):
-        far2 = np.where(z > 0, 2 * np.sin(q / 2) ** 2, 2 * np.sinh(q / 2) ** 2) / q**2
-        far3 = np.where(z > 0, q - np.sin(q), np.sinh(q) - q) / q**3
-    near2, near3 = np.zeros_like(q), np.zeros_like(q)
-    for k in range(11, -1, -1):  # Horner's scheme of sum (-z)^k / (2k + 2)! and / (2k + 3)!
-        near2 = near2 * -z + 1 / math.factorial(2 * k + 2)
-        near3 = near3 * -z + 1 / math.factorial(2 * k + 3)
-    return np.where(np.abs(z) < 1, near2, far2), np.where(np.abs(z) < 1, near3, far3)
+    return ellipse if alpha * r > 0.05 else any_conic
 
 
 def reduced_kepler(start: Run) -> Motion:

@@ -47,7 +47,7 @@ def _canonical_thrust(scene: Scene, body: Body, r0: float, design: Design) -> tu
         if steering is not None and steering.kind == "circumferential":
             pitch = np.pi / 2
         return size * np.cos(pitch), size * np.sin(pitch), 0
-    from sailviz.design.asymptotic import solution as asymptotic
+    from sailviz.design import asymptotic
 
     shape = "electric-sail" if isinstance(device, ElectricSail) else film_of(scene)
     return asymptotic.thrust(shape, sail_strength(scene, design), pitch, r0, body.mu)

@@ -15,9 +15,8 @@ import numpy as np
 from sailviz import ephemeris
 from sailviz.constants import ATOMIC_MASS, AU, STANDARD_GRAVITY
 from sailviz.environment import ionosphere
-from sailviz.propagate import dynamics
-from sailviz.propagate import events as happening
-from sailviz.propagate import low_orbit_callback as seen
+from sailviz.propagate import dynamics, events
+from sailviz.propagate import low_orbit_callback as low_orbit
 from sailviz.propulsion import electric_sail, plasma_brake, solar_sail, thruster
 from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.run.arrays import Body, Craft
@@ -172,7 +171,7 @@ def _brake(device: PlasmaBrake, scene: Scene, design: Any) -> LoweredDevice:
         magnetic_sensitivity=scene.environment.magnetic_sensitivity,
         earth_angle=0.0 if epoch is None else float(ephemeris.greenwich_sidereal_time(epoch)),
     )
-    return LoweredDevice(dynamics.PLASMA_BRAKE, numbers, forces=(seen.low_orbit_forces(),))
+    return LoweredDevice(dynamics.PLASMA_BRAKE, numbers, forces=(low_orbit.low_orbit_forces(),))
 
 
 def _brake_words(device: PlasmaBrake) -> Words:
@@ -185,27 +184,33 @@ def _brake_words(device: PlasmaBrake) -> Words:
 
 
 def _brake_off(device: PlasmaBrake, body: Body) -> list[Happening]:
-    return [("brake off", (happening.RADIUS, body.radius + device.off_below, -1, happening.END_OF_USE))]
+    return [("brake off", (events.RADIUS, body.radius + device.off_below, -1, events.END_OF_USE))]
 
 
 def _brake_columns(device: PlasmaBrake, scene: Scene, model: dynamics.Model, values: Array, velocity: Array) -> Columns:
-    columns = {"plasma_force_N_m": values[seen.FORCE]}
+    columns = {"plasma_force_N_m": values[low_orbit.FORCE]}
     named = model.named
     if named.plasma.kind == ionosphere.FORCE_PROFILE:
         return columns
-    density, ion_mass, voltage = values[seen.PLASMA_DENSITY], values[seen.ION_MASS], values[seen.VOLTAGE]
+    density, ion_mass, voltage = values[low_orbit.PLASMA_DENSITY], values[low_orbit.ION_MASS], values[low_orbit.VOLTAGE]
     columns |= {
         "plasma_density_per_m3": density,
         "mean_ion_mass_u": ion_mass / ATOMIC_MASS,
         "tether_voltage_V": voltage if device.polarity == "positive" else 0.0 - voltage,  # never -0
-        "tether_current_A": values[seen.CURRENT],
-        "tether_power_W": values[seen.POWER],
+        "tether_current_A": values[low_orbit.CURRENT],
+        "tether_power_W": values[low_orbit.POWER],
     }
     if named.brake.attitude == plasma_brake.TILTED:
-        columns["tether_tilt_rad"] = values[seen.TILT]
+        columns["tether_tilt_rad"] = values[low_orbit.TILT]
     speed = np.linalg.norm(velocity, axis=1)
     holds = plasma_brake.validity(
-        density, ion_mass, speed, abs(device.voltage), device.tether_length, values[seen.ALTITUDE], device.wire_radius
+        density,
+        ion_mass,
+        speed,
+        abs(device.voltage),
+        device.tether_length,
+        values[low_orbit.ALTITUDE],
+        device.wire_radius,
     )
     columns["force_law_valid"] = np.asarray(holds.all)
     return columns
@@ -213,8 +218,8 @@ def _brake_columns(device: PlasmaBrake, scene: Scene, model: dynamics.Model, val
 
 def _brake_pull(values: Array, states: Array, factor: Array) -> tuple[Array, Array]:
     """The tether's direction as the normal, and the acceleration m/s2, (n, 3) each."""
-    force = values[seen.FORCE_X : seen.FORCE_X + 3]
-    return values[seen.TETHER_X : seen.TETHER_X + 3].T.copy(), (factor / states[6] * force).T
+    force = values[low_orbit.FORCE_X : low_orbit.FORCE_X + 3]
+    return values[low_orbit.TETHER_X : low_orbit.TETHER_X + 3].T.copy(), (factor / states[6] * force).T
 
 
 DEVICES: dict[type[Section], Device[Any]] = {  # the functions of each record take the class that it stands under

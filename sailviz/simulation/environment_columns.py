@@ -6,7 +6,7 @@ from sailviz import elements as orbital
 from sailviz import ephemeris
 from sailviz.constants import J2_EARTH, RADIUS_EARTH
 from sailviz.propagate import dynamics, voltage_callback
-from sailviz.propagate import low_orbit_callback as seen
+from sailviz.propagate import low_orbit_callback as low_orbit
 from sailviz.simulation.bodies import epoch_of
 from sailviz.simulation.device import device_of
 from sailviz.simulation.environment import parts_of, watches_shadow
@@ -26,7 +26,7 @@ def observe(p: Plan, time: Array, states: Array, factor: Array) -> tuple[Array, 
     for part, record in parts_of(p.scene):
         columns |= record.columns(part, time, states)
     if p.body.name == "Earth":
-        values = seen.observe_low_orbit(time, states, factor, p.model.parameters)
+        values = low_orbit.observe_low_orbit(time, states, factor, p.model.parameters)
         columns |= low_orbit_columns(p, time, states, values)
         pull = device_of(p.scene).pull
         if pull is not None:
@@ -55,13 +55,13 @@ def low_orbit_columns(p: Plan, time: Array, states: Array, values: Array) -> Col
     if epoch is not None:
         columns["earth_rotation_rad"] = ephemeris.greenwich_sidereal_time(epoch, time)
     if watches_shadow(scene):
-        columns["sunlit"] = values[seen.LIGHT] > 0.5
+        columns["sunlit"] = values[low_orbit.LIGHT] > 0.5
     if around.solar_flux is not None:
-        columns["solar_flux_sfu"] = values[seen.SOLAR_FLUX]
+        columns["solar_flux_sfu"] = values[low_orbit.SOLAR_FLUX]
     if around.atmosphere is not None:
-        columns["air_density_kg_m3"] = values[seen.AIR_DENSITY]
-        columns["air_drag_N"] = values[seen.AIR_DRAG]
+        columns["air_density_kg_m3"] = values[low_orbit.AIR_DENSITY]
+        columns["air_drag_N"] = values[low_orbit.AIR_DRAG]
     columns |= device_of(scene).columns(scene.device, scene, p.model, values, velocity)
     if around.height_above == "ellipsoid":
-        columns["altitude_over_ellipsoid_m"] = values[seen.ALTITUDE]
+        columns["altitude_over_ellipsoid_m"] = values[low_orbit.ALTITUDE]
     return columns

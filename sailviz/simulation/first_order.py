@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.design.asymptotic import solution as asymptotic
+from sailviz.design import asymptotic
 from sailviz.errors import Fault, SceneError
 
 POINTS_PER_REVOLUTION = 96  # of the Hermite cubic from which places at given times are read: good to 1e-7

@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 
 from sailviz.constants import AU, MU_SUN
+from sailviz.design import asymptotic
 from sailviz.design.asymptotic import legs
-from sailviz.design.asymptotic import solution as asymptotic
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
 from sailviz.steering import attitude

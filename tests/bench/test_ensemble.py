@@ -19,7 +19,7 @@ from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, MU_SUN
 from sailviz.environment.solar_wind.laws import Gamma
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.events import watch
-from sailviz.propulsion import voltage_control as control
+from sailviz.propulsion import voltage_control
 from sailviz.steering import attitude
 from sailviz.uncertainty.ensembles import RandomWind, fly_ensemble, fly_factors
 
@@ -34,12 +34,13 @@ import json, resource, time
 import numpy as np
 from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.environment.solar_wind.laws import Gamma
-from sailviz.propulsion import voltage_control as control
+from sailviz.propulsion import voltage_control
 from sailviz.uncertainty.ensembles import RandomWind, fly_ensemble
 
 def fly(flights):
     return fly_ensemble([AU, 0, 0], [0, np.sqrt(MU_SUN / AU), 0], 730 * DAY, wind=RandomWind(Gamma(2.593, .7793e-9)),
-                        control=control.row("pressure", interval=DAY), flights=flights, pitch=np.radians(20), threads=2)
+                        control=voltage_control.row("pressure", interval=DAY), flights=flights, pitch=np.radians(20),
+                        threads=2)
 
 fly(10)
 wall, cpu = time.perf_counter(), time.process_time()
@@ -159,7 +160,7 @@ def test_ten_thousand_flights_of_two_years_take_less_than_two_fifths_of_a_second
     """With draws, statistics at 200 times and the check of the step included, on one core."""
 
     def fly():
-        options = {"wind": RandomWind(Gamma(2.593, 0.7793e-9)), "control": control.row(), "pitch": PITCH}
+        options = {"wind": RandomWind(Gamma(2.593, 0.7793e-9)), "control": voltage_control.row(), "pitch": PITCH}
         return fly_ensemble(*START, DAYS * DAY, flights=FLIGHTS, threads=1, **options)
 
     found = fly()

@@ -76,7 +76,7 @@ class Wind(NamedTuple):
     response: int  # ROOT or LINEAR
 
 
-class Swarm(NamedTuple):
+class Ensemble(NamedTuple):
     """What `fly` keeps."""
 
     moments: np.ndarray  # (outputs, MOMENTS) sums over flights, the first of deviations from the reference
@@ -185,8 +185,8 @@ def fly_block(
     c, reference, record, moments, low, width, counts, end, mean,
 ):  # fmt: skip
     """Fly the flights first .. first + used - 1 from start to end. `Plan` and `Wind` taken apart, the row of the
-    control law, what to subtract from the sums (outputs, SEEN), and the arrays of `Swarm` to fill: record, moments and
-    counts of this block, rows of end and mean of these flights."""
+    control law, what to subtract from the sums (outputs, SEEN), and the arrays of `Ensemble` to fill: record, moments
+    and counts of this block, rows of end and mean of these flights."""
     lanes = (used + LANES - 1) // LANES * LANES  # whole vectors, the last ones idle
     s, words, begin = np.zeros((ROWS, lanes)), np.empty((4, lanes), np.uint64), np.zeros(lanes, np.int64)
     # a tuple: numbers in an array would be read again for every lane, in case that writing to `s` had changed them
@@ -244,17 +244,17 @@ _NO_COUNTS = np.zeros((0, SEEN, BINS), np.int32)
 
 
 def record_flights(plan: Plan, wind: Wind, control, flights, reference=None):
-    """A Swarm of at most BLOCK flights, all of them in its record. reference as in `fly`."""
+    """An Ensemble of at most BLOCK flights, all of them in its record. reference as in `fly`."""
     outputs = int(plan.output.max()) + 1
     blank = np.zeros((outputs, SEEN))
     record, moments = np.empty((flights, outputs, SEEN)), np.zeros((outputs, MOMENTS))
     end, mean = np.empty((flights, 6)), np.empty((flights, 3))
     reference = blank if reference is None else reference
     fly_block(0, flights, *plan, *wind, control, reference, record, moments, blank, blank, _NO_COUNTS, end, mean)
-    return Swarm(moments, _NO_COUNTS, blank, blank, record, end, mean)
+    return Ensemble(moments, _NO_COUNTS, blank, blank, record, end, mean)
 
 
-def fly(plan: Plan, wind: Wind, control, reference, flights, threads=1, progress=None) -> Swarm:
+def fly(plan: Plan, wind: Wind, control, reference, flights, threads=1, progress=None) -> Ensemble:
     """Fly an ensemble. control : row of `sailviz.propulsion.voltage_control`, its MU in the units of the plan;
     reference (outputs, SEEN) : values near the means, subtracted before squares are summed. progress : called with the
     number of flights done."""
@@ -297,7 +297,7 @@ def fly(plan: Plan, wind: Wind, control, reference, flights, threads=1, progress
     counts = np.zeros((outputs, SEEN, BINS), np.int64)
     for _ in range(threads):
         counts += shelf.get()
-    return Swarm(total, counts, low, width, head.record, end, mean)
+    return Ensemble(total, counts, low, width, head.record, end, mean)
 
 
 def covariance(moments, flights):
@@ -313,17 +313,17 @@ def covariance(moments, flights):
     return mean, cov, np.sqrt(np.maximum(others, 0.0))
 
 
-def percentiles(swarm: Swarm, levels):
+def percentiles(ensemble: Ensemble, levels):
     """(levels, outputs, SEEN). Exact where all flights are recorded; else read from the histograms, to a bin's width at
     worst, and no further out than half the range of the first block beyond its ends."""
-    if not len(swarm.counts):
-        return np.percentile(swarm.record, levels, axis=0)
-    below = np.concatenate([np.zeros((*swarm.counts.shape[:2], 1)), np.cumsum(swarm.counts, axis=2)], axis=2)
-    out = np.empty((len(levels), *swarm.low.shape))
-    for o in range(len(swarm.low)):
+    if not len(ensemble.counts):
+        return np.percentile(ensemble.record, levels, axis=0)
+    below = np.concatenate([np.zeros((*ensemble.counts.shape[:2], 1)), np.cumsum(ensemble.counts, axis=2)], axis=2)
+    out = np.empty((len(levels), *ensemble.low.shape))
+    for o in range(len(ensemble.low)):
         for a in range(SEEN):
-            out[:, o, a] = swarm.low[o, a]
-            if swarm.width[o, a] > 0:
+            out[:, o, a] = ensemble.low[o, a]
+            if ensemble.width[o, a] > 0:
                 wanted = np.asarray(levels) / 100 * below[o, a, -1]
-                out[:, o, a] += swarm.width[o, a] * np.interp(wanted, below[o, a], np.arange(BINS + 1))
+                out[:, o, a] += ensemble.width[o, a] * np.interp(wanted, below[o, a], np.arange(BINS + 1))
     return out

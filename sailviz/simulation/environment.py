@@ -125,7 +125,9 @@ def _tabled_air(part: MsisAtmosphere, place: Place) -> dict[str, Any]:
 
 # ---------------------------------------------------------------- bodies
 def _orbit_of_third_body(part: ThirdBody) -> third_body.Parameters:
-    return third_body.Parameters(part.mu, part.radius, float(np.sqrt(MU_SUN / part.radius**3)), part.azimuth)
+    return third_body.Parameters(
+        part.mu, part.radius, third_body.circular_rate(MU_SUN, part.mu, part.radius), part.azimuth
+    )
 
 
 def _third_body_drawn(part: ThirdBody) -> DrawnBody:

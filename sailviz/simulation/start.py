@@ -91,8 +91,9 @@ def _at_rest(scene: Scene, start: HeliostationaryStart, body: Body, design: Hold
 
 def _lagrange(scene: Scene, start: LagrangeStart, body: Body, design: Holding) -> State:
     third = scene.environment.third_body
-    orbit, azimuth = (AU, 0.0) if third is None else (third.radius, third.azimuth)
-    return _beside(displaced.state(start.radius, 0.0, (start.radius / orbit) ** 1.5, azimuth), start)
+    mu, orbit, azimuth = (0.0, AU, 0.0) if third is None else (third.mu, third.radius, third.azimuth)
+    ratio = (start.radius / orbit) ** 1.5 * np.sqrt(1 + mu / body.mu)  # of the planet's rate to Kepler's at the craft
+    return _beside(displaced.state(start.radius, 0.0, ratio, azimuth), start)
 
 
 def _on_track(scene: Scene, start: DesignedStart, body: Body, design: Track) -> State:

@@ -47,12 +47,13 @@ def check(found, expected):
 
 
 # ---------------------------------------------------------------- gravity
-def test_a_third_body_pulls_towards_where_it_is():
+def test_a_third_body_pulls_towards_where_it_is_and_takes_the_central_body_along():
     planet = Planet(mu=2e-3, radius=1.3, rate=0.4, azimuth=0.9)
     time = 2.5
     angle = 0.9 + 0.4 * time
     towards = 1.3 * np.array([np.cos(angle), np.sin(angle), 0.0]) - FAR
-    expected = 2e-3 * towards / np.linalg.norm(towards) ** 3
+    own = 2e-3 / 1.3**2 * np.array([np.cos(angle), np.sin(angle), 0.0])  # the fall of the central body
+    expected = 2e-3 * towards / np.linalg.norm(towards) ** 3 - own
     found, _ = derivative(dynamics.model(1.0, third_body=planet), FAR, FAST, time)
     # of a pull of 1e-3 beside gravity's 1, from which it is taken: rounding of the sum
     np.testing.assert_allclose(found - gravity(FAR, 1.0), expected, rtol=0, atol=1e-15 * 10)

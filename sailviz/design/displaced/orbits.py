@@ -102,9 +102,10 @@ def lagrange_point(
 
     radius : m from the Sun. planet_mu : m3/s2, 0 leaves the planet's gravity out (constants.MU_EARTH for the Earth).
     planet_orbit : m, its circular orbit. The sail faces the Sun and gives
-    a_r = mu / r^2 - Omega^2 r -+ mu_p / (r_p - r)^2, Omega^2 = mu / r_p^3, upper sign inside the planet's orbit.
-    Re-derived. Neglected: the Sun's own fall towards the planet, mu_p (1 - r / r_p) / r_p^2, under 2e-7 mm/s2 within
-    0.01 au of the Earth; the orbit's eccentricity. Useful outside the planet's sphere of influence.
+    a_r = mu / r^2 - Omega^2 r -+ mu_p / (r_p - r)^2 + mu_p / r_p^2, Omega^2 = (mu + mu_p) / r_p^3, upper sign inside
+    the planet's orbit; the last term is the Sun's own fall towards the planet. Re-derived; exact for two bodies on
+    circles about each other. Neglected: the eccentricity of the planet's orbit, by which the point would have to
+    move to and fro by e r_p (1.7 % for the Earth), its moons, other planets.
     """
     from scipy.optimize import brentq  # half a second to import, seldom needed
 
@@ -113,7 +114,8 @@ def lagrange_point(
     def outward(r, orbit=orbit, mu=mu):
         with np.errstate(divide="ignore", invalid="ignore"):
             pull = np.where(mu > 0, mu / (orbit - r) ** 2, 0.0)
-        return MU_SUN / r**2 - MU_SUN * r / orbit**3 - np.sign(orbit - r) * pull
+        fall = mu / orbit**2 - mu * r / orbit**3  # of the Sun towards the planet, less what that adds to Omega^2 r
+        return MU_SUN / r**2 - MU_SUN * r / orbit**3 - np.sign(orbit - r) * pull + fall
 
     with np.errstate(divide="ignore"):
         size = outward(r)

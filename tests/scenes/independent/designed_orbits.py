@@ -26,8 +26,8 @@ def held(scene, t):
         r, v, a = circling(rho, z, rate, azimuth + rate * t)
     elif start.kind == "lagrange-point":
         third = scene.environment.third_body
-        radius, azimuth = (third.radius, third.azimuth) if third else (AU, 0.0)
-        rate = np.sqrt(MU_SUN / radius**3)
+        mu, radius, azimuth = (third.mu, third.radius, third.azimuth) if third else (0.0, AU, 0.0)
+        rate = np.sqrt((MU_SUN + mu) / radius**3)
         r, v, a = circling(start.radius, 0.0, rate, azimuth + rate * t)
         a = a - third_body(scene, t, r)
     elif start.kind == "planet-following":
@@ -69,13 +69,14 @@ def ellipse(a, e, mu, true_anomaly, t):
 
 
 def third_body(scene, t, r):
-    """Pull of a planet on a circular orbit in the ecliptic."""
+    """Pull of a planet on a circular orbit in the ecliptic, on the craft less on the Sun."""
     third = scene.environment.third_body
     if third is None:
         return np.zeros(3)
-    angle = third.azimuth + np.sqrt(MU_SUN / third.radius**3) * t
-    d = third.radius * np.array([np.cos(angle), np.sin(angle), 0]) - r
-    return third.mu * d / np.linalg.norm(d) ** 3
+    angle = third.azimuth + np.sqrt((MU_SUN + third.mu) / third.radius**3) * t
+    planet = third.radius * np.array([np.cos(angle), np.sin(angle), 0])
+    d = planet - r
+    return third.mu * (d / np.linalg.norm(d) ** 3 - planet / third.radius**3)
 
 
 def designed(scene, t):

@@ -21,11 +21,16 @@ class Fault:
     given: str = ""  # key of a value put over the file's, which is at fault or has a part in it
 
     def __str__(self) -> str:
+        return self.words()
+
+    def words(self, option: str = "") -> str:
+        """The sentence. option : by which a shell puts values over the file's, "--set"; "" in Python."""
         where = _short(self.where)
+        before = f"{option} " if option else ""
         if self.given and _below(self.where, self.given):
-            where = f"--set {where}"
+            where = f"{before}{where}"
         elif self.given:
-            where += f" (with --set {_short(self.given)})"
+            where += f" (with {before}{_short(self.given)})"
         elif self.line:
             where += f" (line {self.line})"
         return f"{where}: {self.what}" + (f" {self.hint}" if self.hint else "")
@@ -52,8 +57,12 @@ class SceneError(SailvizError):
     def __init__(self, faults: list[Fault], source: str = "scene"):
         self.faults = faults
         self.source = source
-        count = "1 fault" if len(faults) == 1 else f"{len(faults)} faults"
-        super().__init__("\n".join([f"{_short(source)}: {count}"] + [f"  {fault}" for fault in faults]))
+        super().__init__(self.words())
+
+    def words(self, option: str = "") -> str:
+        """All faults, a line each. option : as in `Fault.words`."""
+        count = "1 fault" if len(self.faults) == 1 else f"{len(self.faults)} faults"
+        return "\n".join([f"{_short(self.source)}: {count}"] + [f"  {fault.words(option)}" for fault in self.faults])
 
 
 class PropagationError(SailvizError):

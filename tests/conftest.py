@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,10 @@ from sailviz.shipped import shipped_scenes
 # with `pytest --hypothesis-profile=default`.
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
+
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # begun in the background by a shell, as are then all commands
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 class Flight(NamedTuple):

@@ -56,7 +56,9 @@ def _tolerances(given: Iterable[str], option: str) -> dict[str, float]:
     for item in given:
         name, _, number = item.rpartition("=")
         try:
-            found[name.strip()] = float(number)
+            found[name.strip()] = allowed = float(number)
         except ValueError:
             raise click.BadParameter(f"{item!r} is not a number or QUANTITY=NUMBER", param_hint=option) from None
+        if not allowed >= 0:  # infinity lets a quantity go unlooked at
+            raise click.BadParameter(f"{item!r}: what is allowed is a number of at least 0", param_hint=option)
     return found

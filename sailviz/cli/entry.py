@@ -1,17 +1,22 @@
 """The command line: the same verbs as the Python interface.
 
-Exit codes: 0 all went well, 1 an expectation of a scene failed, 2 bad input, 3 the propagation or the recording failed,
-130 interrupted. A command is imported when it is asked for, and imports heavy modules when it runs, so that `sailviz
-check` answers at once.
+Exit codes: those of shared.py. A command is imported when it is asked for, and imports heavy modules when it runs, so
+that `sailviz check` answers at once.
 """
 
 from __future__ import annotations
 
 import gc
 import os
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from importlib import import_module
+from typing import Any
 
 import click
+
+from sailviz.cli.endings import asked_to_end, printable, unforeseen
+from sailviz.cli.shared import INTERRUPTED, UNREAD, bearable, tell
 
 COMMANDS = {  # name, which is also that of the module -> function there
     "check": "check",
@@ -52,6 +57,53 @@ class Verbs(click.Group):
             if known not in self.commands:
                 self.add_command(getattr(import_module(f"sailviz.cli.{known}"), COMMANDS[known]))
         return super().get_command(context, name)
+
+    def main(
+        self,
+        args: Sequence[str] | None = None,
+        prog_name: str | None = None,
+        complete_var: str | None = None,
+        standalone_mode: bool = True,
+        **more: Any,
+    ) -> Any:
+        """Run a command; as a program of its own, one that ends properly when it is asked to."""
+        if not standalone_mode:
+            return super().main(args, prog_name, complete_var, standalone_mode=False, **more)
+        printable()
+        with asked_to_end():
+            return super().main(args, prog_name, complete_var, standalone_mode=True, **more)
+
+    def make_context(self, *arguments: Any, **more: Any) -> click.Context:
+        """Read the command line."""
+        with _bearable_messages():
+            return super().make_context(*arguments, **more)
+
+    def invoke(self, context: click.Context) -> Any:
+        """Run the command that was asked for. What it did not foresee has an exit code of its own."""
+        try:
+            with _bearable_messages():
+                return super().invoke(context)
+        except KeyboardInterrupt:
+            tell("Interrupted.")
+            context.exit(INTERRUPTED)
+        except (click.exceptions.Exit, click.ClickException, click.Abort):
+            raise
+        except BrokenPipeError:
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # so that Python's last flush fails no more
+            context.exit(UNREAD)
+        except Exception as error:
+            context.exit(unforeseen(error))
+
+
+@contextmanager
+def _bearable_messages() -> Iterator[None]:
+    """Let nobody read thousands of letters that were given by accident."""
+    try:
+        yield
+    except click.ClickException as error:
+        if bearable(error.message) == error.message:
+            raise
+        raise click.UsageError(bearable(error.format_message()), getattr(error, "ctx", None)) from None
 
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"]})

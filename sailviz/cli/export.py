@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import click
 
+from sailviz.cli.outputs import file_at, folder_at, is_folder
 from sailviz.cli.shared import in_one_sentence
 
 
@@ -22,5 +23,7 @@ def export(file: str, form: str | None, output: str | None, entities: tuple[str,
     from sailviz import recording
 
     with in_one_sentence():
+        if output is not None:
+            folder_at(output, "files") if is_folder(output) else file_at(output, "file")
         for path in recording.export(file, output, form or "", entities=entities, frame=frame):
             click.echo(path)

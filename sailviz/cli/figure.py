@@ -6,7 +6,8 @@ from pathlib import Path
 
 import click
 
-from sailviz.cli.shared import BAD_INPUT
+from sailviz.cli.outputs import file_at, folder_at, is_folder, make_folder
+from sailviz.cli.shared import BAD_INPUT, tell
 
 
 @click.command()
@@ -33,6 +34,7 @@ def figure(
     quiet: bool,
 ) -> None:
     """Draw figures: the thesis' own from our functions, and maps of stability, validity, spirals and escape."""
+    from sailviz.errors import OutputError
     from sailviz.figures import FigureError, draw, names, title
 
     if listing:
@@ -42,19 +44,21 @@ def figure(
     if not figures:
         raise click.UsageError("Name a figure, or see them with --list.")
     options = {"series": series} if series else {}
-    target = Path(output) if output else Path()
-    folder = not output or target.is_dir() or not target.suffix
+    target = Path() if output is None else Path(output)
+    folder = output is None or is_folder(target) or not target.suffix
     if len(figures) > 1 and not folder:
         raise click.UsageError("-o names one file, but there are several figures: give a folder.")
     try:
         for name in figures:
             title(name)  # a wrong name is found before anything is drawn
         if folder:
-            target.mkdir(parents=True, exist_ok=True)
+            make_folder(folder_at("." if output is None else output, "figures"))
+        else:
+            file_at(target, "figure")
         for name in figures:
             path = draw(name, target / f"{name}.png" if folder else target, style, dpi, **options)
             if not quiet:
                 click.echo(f"Drew {path}: {title(name)}")
-    except (FigureError, OSError) as error:
-        click.echo(str(error), err=True)
+    except (FigureError, OutputError, OSError) as error:
+        tell(error)
         raise click.exceptions.Exit(BAD_INPUT) from None

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import click
 
-from sailviz.cli.shared import collecting_failures, make_folder, progress_bar, say_if_compiling
+from sailviz.cli.outputs import folder_at, make_folder
+from sailviz.cli.shared import collecting_failures, progress_bar, say_if_compiling
 
 
 @click.command(hidden=True)
@@ -17,8 +16,8 @@ def gallery(scenes: tuple[str, ...], output: str, quiet: bool) -> None:
     """Take the pictures of the README, one of every shipped scene, and print the table that shows them."""
     from sailviz.cli import readme_pictures
 
-    say_if_compiling(quiet)
     with collecting_failures() as failures, failures.next(), progress_bar("Gallery", quiet) as progress:
-        folder = Path(output)
+        folder = folder_at(output, "pictures")
+        say_if_compiling(quiet)
         make_folder(folder)
         click.echo(readme_pictures.markdown(readme_pictures.take(folder, scenes, progress=progress)))

@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from sailviz.cli.numbers import Number
+from sailviz.cli.outputs import file_at, file_or_folder, make_folder
 from sailviz.cli.shared import (
     collecting_failures,
-    make_folder,
     progress_bar,
     say_if_compiling,
     set_option,
@@ -55,8 +56,16 @@ class Size(click.ParamType):
 @click.option("--size", type=Size(), metavar="WxH", help="In pixels; 1600x900, a movie 960x540.")
 @click.option("--bare", is_flag=True, help="Leave out menu and time panel, as movies do.")
 @click.option("--movie", "film", metavar="MOVIE", help="Make a .webp, .gif or .mp4 of the whole run instead.")
-@click.option("--seconds", type=float, default=8.0, show_default=True, help="How long the movie lasts.")
-@click.option("--fps", type=float, default=12.0, show_default=True, help="Pictures in a second of the movie.")
+@click.option(
+    "--seconds",
+    type=Number(0, 3000, "seconds", above=True),
+    default=8.0,
+    show_default=True,
+    help="How long the movie lasts.",
+)
+@click.option(
+    "--fps", type=Number(0, 60, above=True), default=12.0, show_default=True, help="Pictures in a second of the movie."
+)
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
 @set_option
 def picture(
@@ -76,12 +85,12 @@ def picture(
 
     A scene is simulated first. Exit code 1 where a view of the recording complains.
     """
-    if film and output:
+    if film is not None and output is not None:
         raise click.UsageError("-o is for pictures; --movie names its own file.")
-    if len(sources) > 1 and (film or (output and Path(output).suffix)):
+    if len(sources) > 1 and (film is not None or (output and Path(output).suffix)):
         raise click.UsageError("one name, but there are several sources: give a folder.")
     with collecting_failures() as failures, failures.next():
-        _check_before(at, film)
+        _check_before(at, film, seconds, fps)
         for source, out in zip(sources, _outputs(sources, output, film), strict=True):
             with failures.next(source), _recording_of(source, settings, quiet) as path:
                 report: PictureReport | MovieReport
@@ -96,28 +105,26 @@ def picture(
                     click.echo(_said(report))
 
 
-def _check_before(at: str, film: str | None) -> None:
+def _check_before(at: str, film: str | None, seconds: float, fps: float) -> None:
     """Everything that can be known to fail before a scene is simulated."""
     from sailviz.recording.views.instant import moment
-    from sailviz.recording.views.movie import check_format
+    from sailviz.recording.views.movie import check_format, frames_of
     from sailviz.recording.views.screenshot import check_vulkan
 
     check_vulkan()
     moment(at)
-    if film:
+    if film is not None:
         check_format(film)
+        frames_of(seconds, fps)
 
 
 def _outputs(sources: Sequence[str], output: str | None, film: str | None) -> list[Path]:
     """Where the picture of each source goes; folders are made."""
-    if film:
-        files = [Path(film)]
-    elif output and Path(output).suffix and not Path(output).is_dir():
-        files = [Path(output)]
-        if files[0].suffix.lower() != ".png":
-            raise RecordingError(f"{output} is no picture: its name must end in .png")
+    if film is not None:
+        files = [file_at(film, "movie")]
     else:
-        files = [Path(output or ".") / f"{Path(source).stem}.png" for source in sources]
+        given = "." if output is None else output
+        files = [file_or_folder(given, f"{Path(source).stem}.png", "picture", (".png",)) for source in sources]
         twice = next((file.name for file in files if files.count(file) > 1), None)
         if twice:
             raise RecordingError(f"two pictures would have the same name, {twice}: take them one by one with -o")

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from sailviz.cli.outputs import file_at, file_or_folder, make_folder
 from sailviz.cli.shared import (
     EXPECTATION_FAILED,
     Failures,
     collecting_failures,
-    make_folder,
     progress_bar,
     say_if_compiling,
     scenes_argument,
@@ -58,29 +58,34 @@ def run(
     SCENE is a TOML file or the name of a shipped scene. Without -o, --view, --web or --connect the recording goes to
     NAME.rrd in the current folder.
     """
-    if sum(map(bool, (view, web, connect))) > 1:
+    if view + web + (connect is not None) > 1:
         raise click.UsageError("--view, --web and --connect exclude each other.")
-    if output == "-" and (len(scenes) > 1 or view or web or connect or as_json):
+    if output == "-" and (len(scenes) > 1 or view or web or connect is not None or as_json):
         raise click.UsageError("-o - takes one scene and no viewer, and leaves no room for --json.")
     if len(scenes) > 1 and output and Path(output).suffix:
         raise click.UsageError("-o names one file, but there are several scenes: give a folder.")
     quiet = quiet or as_json or output == "-"
+    values = values_of(settings)
     with collecting_failures(as_json) as failures:
         for name in scenes:
             with failures.next(name):
-                values, sinks = values_of(settings), _sinks(name, output, view, web, connect)
+                sinks = _sinks(name, output, view, web, connect)
                 _run_one(name, values, sinks, quiet, failures)
 
 
 def _sinks(name: str, output: str | None, view: bool, web: bool, connect: str | None) -> Callable[[], list[Any]]:
-    """Where the recording of one scene goes: called once there is something to record, it makes the file's folder and
-    the recorder's sinks."""
-    watched = view or web or bool(connect)
+    """Where the recording of one scene goes, checked now. Called once there is something to record, what comes back
+    makes the file's folder and the recorder's sinks."""
+    watched = view or web or connect is not None
     file = None
-    if output != "-" and (output or not watched):
-        file = Path(f"{Path(name).stem}.rrd")
-        if output:
-            file = Path(output) if Path(output).suffix and not Path(output).is_dir() else Path(output) / file
+    if output is not None and output != "-":
+        file = file_or_folder(output, f"{Path(name).stem}.rrd", "recording")
+    elif output is None and not watched:
+        file = file_at(f"{Path(name).stem}.rrd", "recording")
+    if connect is not None:
+        from sailviz.recording.addresses import check_answer
+
+        check_answer(connect)
 
     def made() -> list[Any]:
         from sailviz import recording
@@ -89,7 +94,7 @@ def _sinks(name: str, output: str | None, view: bool, web: bool, connect: str | 
             make_folder(file.parent)
         places: list[Any] = [recording.STDOUT] if output == "-" else [] if file is None else [file]
         places += [recording.VIEWER] * view + [recording.WEB] * web
-        return places + ([recording.Connect(connect)] if connect else [])
+        return places + ([] if connect is None else [recording.Connect(connect)])
 
     return made
 

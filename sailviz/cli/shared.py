@@ -1,23 +1,25 @@
-"""What commands share: arguments, settings as KEY=VALUE, a progress bar, and exit codes.
+"""What commands share: arguments, settings as KEY=VALUE, a progress bar, messages and exit codes.
 
-0 all went well, 1 an expectation or a picture failed, 2 bad input, 3 the propagation failed, 130 interrupted.
+0 all went well, 1 an expectation or a picture failed, 2 bad input, 3 the propagation failed, 4 a fault of sailviz
+itself, 130 interrupted, 141 nobody reads what is printed.
 """
 
 from __future__ import annotations
 
 import json
+import re
 import sys
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
 import click
 
 from sailviz.errors import PropagationError, RecordingError, SceneError
 
-EXPECTATION_FAILED, BAD_INPUT, RUN_FAILED, INTERRUPTED = 1, 2, 3, 130
+EXPECTATION_FAILED, BAD_INPUT, RUN_FAILED, UNFORESEEN, INTERRUPTED, UNREAD = 1, 2, 3, 4, 130, 141
+LONGEST_WORD, LONGEST_LINE = 300, 2000  # letters of a message; what is longer was given by accident
 
 scenes_argument = click.argument("scenes", nargs=-1, required=True, metavar="SCENE...")
 files_argument = click.argument("files", nargs=-1, required=True, metavar="FILE...")
@@ -67,12 +69,21 @@ def progress_bar(title: str, quiet: bool) -> Iterator[Callable[[float], None] | 
         yield lambda fraction: bar.update(fraction - bar.n)
 
 
-def make_folder(folder: Path) -> None:
-    """Make a folder where there is none. RecordingError where that cannot be."""
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise RecordingError(f"cannot make the folder {folder}: {(error.strerror or str(error)).lower()}") from None
+def tell(message: object) -> None:
+    """A message to the person at the shell, on standard error."""
+    click.echo(bearable(said(message)), err=True)
+
+
+def said(message: object) -> str:
+    """A message in words; a scene's faults in those of a shell, which puts values over the scene's by --set."""
+    return message.words("--set") if isinstance(message, SceneError) else str(message)
+
+
+def bearable(text: str) -> str:
+    """A message whose words and lines are not endless."""
+    text = re.sub(rf"\S{{{LONGEST_WORD},}}", lambda word: f"{word[0][:200]}...{word[0][-60:]}", text)
+    lines = [line if len(line) <= LONGEST_LINE else f"{line[:1500]}...{line[-200:]}" for line in text.split("\n")]
+    return "\n".join(lines)
 
 
 class Failures:
@@ -104,8 +115,8 @@ class Failures:
     def _tell(self, name: str, error: Exception, code: int) -> None:
         self.worst(code)
         if self.as_json:
-            self.summaries.append({"scene": name, "error": str(error)})
-        click.echo(f"{name}: {error}" if isinstance(error, PropagationError) else str(error), err=True)
+            self.summaries.append({"scene": name, "error": said(error)})
+        tell(f"{name}: {error}" if isinstance(error, PropagationError) else error)
 
 
 @contextmanager
@@ -129,8 +140,5 @@ def in_one_sentence() -> Iterator[None]:
     try:
         yield
     except RecordingError as error:
-        click.echo(str(error), err=True)
+        tell(error)
         sys.exit(BAD_INPUT)
-    except KeyboardInterrupt:
-        click.echo("Interrupted.", err=True)
-        sys.exit(INTERRUPTED)

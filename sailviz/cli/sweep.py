@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from sailviz.cli.outputs import file_at
 from sailviz.cli.shared import (
     BAD_INPUT,
     EXPECTATION_FAILED,
@@ -20,6 +21,7 @@ from sailviz.cli.shared import (
     RUN_FAILED,
     say_if_compiling,
     set_option,
+    tell,
     values_of,
 )
 from sailviz.errors import RecordingError, SailvizError, SceneError
@@ -27,6 +29,9 @@ from sailviz.errors import RecordingError, SailvizError, SceneError
 if TYPE_CHECKING:
     from sailviz.sweeps import Sweep
     from sailviz.sweeps.definition import Definition
+
+
+ENDINGS = (".parquet", "")
 
 
 @click.command()
@@ -57,7 +62,7 @@ if TYPE_CHECKING:
     metavar="ENGINE",
     help="processes, threads, serial, dask (a cluster on this machine) or dask://HOST:PORT.",
 )
-@click.option("--workers", type=click.IntRange(1), metavar="N", help="As many as there are cores by default.")
+@click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="As many as there are cores by default.")
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
 @click.option("--json", "as_json", is_flag=True, help="Print a summary that a script can read.")
 def sweep(
@@ -82,8 +87,9 @@ def sweep(
     scene, 3 if one failed.
     """
     quiet = quiet or as_json
-    path = Path(output or f"{Path(scene).stem}-sweep.parquet")
+    path = Path(f"{Path(scene).stem}-sweep.parquet" if output is None else output)
     try:
+        file_at(path if output is None else output, "table", ENDINGS)
         from sailviz.sweeps.definition import define
 
         definition, wanted = define(scene, _varied(vary), draws, seed, _listed(report), together, values_of(settings))
@@ -91,16 +97,15 @@ def sweep(
 
         say_if_compiling(quiet)
         with _progress(path.stem, definition.flights, quiet) as progress:
-            path.parent.mkdir(parents=True, exist_ok=True)
             found = fly_all(definition, [*wanted, *_listed(record)], None, engine, workers, path, progress)
     except KeyboardInterrupt:
         _say_interrupted(path)
         sys.exit(INTERRUPTED)
     except (SceneError, RecordingError, OSError) as error:
-        click.echo(str(error), err=True)
+        tell(error)
         sys.exit(BAD_INPUT)
     except SailvizError as error:
-        click.echo(f"{scene}: {error}", err=True)
+        tell(f"{scene}: {error}")
         sys.exit(BAD_INPUT)
     if as_json:
         click.echo(json.dumps(_facts(found, definition), indent=2))

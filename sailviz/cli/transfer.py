@@ -7,14 +7,17 @@ import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from sailviz.cli.shared import BAD_INPUT, EXPECTATION_FAILED, progress_bar
+from sailviz.cli.numbers import Number
+from sailviz.cli.outputs import file_at
+from sailviz.cli.shared import BAD_INPUT, EXPECTATION_FAILED, progress_bar, tell
 from sailviz.cli.transfer_in_words import summary, words
 from sailviz.constants import AU, DAY
+from sailviz.errors import OutputError
+from sailviz.files import write_text
 
 if TYPE_CHECKING:
     import numpy as np
@@ -36,14 +39,32 @@ TABLE_MM_S2 = (2.0, 1.5, 1.0, 0.75, 0.5, 0.35, 0.25)
     "...-polynomial. Several with --table.",
 )
 @click.option(
-    "-a", "--acceleration", type=float, default=1.0, show_default=True, metavar="MM_S2", help="At 1 au, in mm/s²."
+    "-a",
+    "--acceleration",
+    type=Number(0, 1e3, "mm/s²", above=True),
+    default=1.0,
+    show_default=True,
+    metavar="MM_S2",
+    help="At 1 au, in mm/s².",
 )
 @click.option("--orbits", is_flag=True, help="In space, between the planets' elliptic orbits, both anomalies free.")
 @click.option("--date", metavar="DATE", help="Meet the planet itself, leaving on this date, e.g. 2030-01-01.")
-@click.option("--window", type=float, metavar="DAYS", help="With --date: leave on the best day of so many.")
+@click.option(
+    "--window",
+    type=Number(0, 36525, "days", above=True),
+    metavar="DAYS",
+    help="With --date: leave on the best day of so many.",
+)
 @click.option("--dates", type=click.IntRange(2, 400), default=41, show_default=True, help="Of a window, looked at.")
-@click.option("--radius-au", type=float, metavar="AU", help="To a circle of this radius instead of TO.")
-@click.option("--inclination-deg", type=float, metavar="DEG", help="Of the circle aimed at, to the ecliptic.")
+@click.option(
+    "--radius-au", type=Number(0, 1e3, "au", above=True), metavar="AU", help="To a circle of this radius instead of TO."
+)
+@click.option(
+    "--inclination-deg",
+    type=Number(-180, 180, "degrees"),
+    metavar="DEG",
+    help="Of the circle aimed at, to the ecliptic.",
+)
 @click.option("--starts", type=click.IntRange(1, 200), help="Departure points tried with --orbits (24).")
 @click.option("--table", "as_table", is_flag=True, help="Flight times over the acceleration, between circles.")
 @click.option("-o", "--output", metavar="FILE", help="Write the flight as a scene that sailviz run flies.")
@@ -81,7 +102,9 @@ def transfer(
     """
     sails = sails or ("ideal",)
     try:
-        _agree(target, radius_au, inclination_deg, orbits, date, window, sails, as_table, output, acceleration)
+        _agree(target, radius_au, inclination_deg, orbits, date, window, sails, as_table, output)
+        if output is not None and output != "-":
+            file_at(output, "scene")
         from sailviz.design.minimum_time import costates
         from sailviz.transfers import find, place, scene_of
 
@@ -91,15 +114,15 @@ def transfer(
         if as_table:
             _table(start, end, sails, quiet, as_json)
             return
-        departure = None if date is None else date if window is None else _window(date, window)
+        departure = None if date is None else _first(date) if window is None else _window(date, window)
         with _progress(f"{start.name} to {end.name}", quiet or as_json) as progress:
             found = find(
                 start, end, sails[0], acceleration * 1e-3,
                 orbits=orbits, departure=departure, starts=starts, dates=dates, progress=progress,
             )  # fmt: skip
-        text = scene_of(found, form) if output and found.flight.feasible else None
-    except ValueError as error:
-        click.echo(str(error), err=True)
+        text = scene_of(found, form) if output is not None and found.flight.feasible else None
+    except (ValueError, OutputError) as error:
+        tell(error)
         raise click.exceptions.Exit(BAD_INPUT) from None
     if as_json:
         click.echo(json.dumps(summary(found), indent=2))
@@ -109,7 +132,7 @@ def transfer(
         click.echo("\n".join(words(found)))
     if not found.flight.feasible:
         raise click.exceptions.Exit(EXPECTATION_FAILED)
-    if output and text is not None:
+    if output is not None and text is not None:
         _write(output, text, quiet or as_json)
 
 
@@ -123,7 +146,6 @@ def _agree(
     sails: Sequence[str],
     as_table: bool,
     output: str | None,
-    acceleration: float,
 ) -> None:
     """ValueError for what does not go together."""
     if (target is None) == (radius_au is None):
@@ -134,14 +156,10 @@ def _agree(
         raise ValueError("--date meets a planet where it is: neither --orbits nor --radius-au go with it.")
     if window is not None and date is None:
         raise ValueError("--window counts its days from a --date.")
-    if window is not None and not 0 < window <= 36525:
-        raise ValueError("--window must be a number of days above 0 and not more than a century.")
-    if as_table and (orbits or date or output or inclination_deg):
+    if as_table and (orbits or date or output is not None or inclination_deg):
         raise ValueError("--table shows flights between circles: no --orbits, --date, --inclination-deg or -o.")
     if len(sails) > 1 and not as_table:
         raise ValueError("Several sails are compared with --table.")
-    if not (math.isfinite(acceleration) and acceleration > 0):
-        raise ValueError(f"--acceleration must be above 0 mm/s², is {acceleration:g}.")
 
 
 def _aim(target: str | None, radius_au: float | None, inclination_deg: float | None) -> Place:
@@ -153,13 +171,22 @@ def _aim(target: str | None, radius_au: float | None, inclination_deg: float | N
     return circle(radius_au * AU, math.radians(inclination_deg or 0.0))
 
 
+def _first(date: str) -> np.datetime64:
+    """The day of a departure, UTC. ValueError for what is no date."""
+    from sailviz.run.dates import epoch_of
+
+    try:
+        found = epoch_of(date)
+    except ValueError as error:
+        raise ValueError(f"--date: {error}: write 2030-01-01.") from None
+    assert found is not None, "only None has no date"
+    return found
+
+
 def _window(date: str, days: float) -> tuple[np.datetime64, np.datetime64]:
     import numpy as np
 
-    try:
-        first = np.datetime64(date, "s")
-    except ValueError:
-        raise ValueError(f"{date!r} is no date: write 2030-01-01") from None
+    first = _first(date)
     return first, first + np.timedelta64(round(days * DAY), "s")
 
 
@@ -202,13 +229,15 @@ def _table(start: Place, end: Place, sails: Sequence[str], quiet: bool, as_json:
 
 def _write(output: str, text: str, quiet: bool) -> None:
     if output == "-":
-        sys.stdout.write(text)
+        if not sys.stdout.isatty():  # a scene is UTF-8 whatever the console speaks
+            sys.stdout.buffer.write(text.encode())
+        else:
+            sys.stdout.write(text)
         return
     try:
-        Path(output).parent.mkdir(parents=True, exist_ok=True)
-        Path(output).write_text(text, encoding="utf-8")
-    except OSError as error:
-        click.echo(f"cannot write {output}: {(error.strerror or str(error)).lower()}", err=True)
+        write_text(output, text, "scene")
+    except OutputError as error:
+        tell(error)
         raise click.exceptions.Exit(BAD_INPUT) from None
     if not quiet:
         click.echo(f"Wrote {output}; fly it with: sailviz run {output}")

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import click
 
+from sailviz.cli.numbers import PORT
 from sailviz.cli.shared import collecting_failures, files_argument
 
 
 @click.command()
 @files_argument
 @click.option("--no-open", is_flag=True, help="Do not open a browser: print the address only.")
-@click.option("--port", default=0, help="Of the page, e.g. to forward it through ssh; a free one by default.")
-@click.option("--data-port", default=0, help="Of the recordings; a free one by default.")
+@click.option(
+    "--port", type=PORT, default=0, help="Of the page, e.g. to forward it through ssh; a free one by default."
+)
+@click.option("--data-port", type=PORT, default=0, help="Of the recordings; a free one by default.")
 def web(files: tuple[str, ...], no_open: bool, port: int, data_port: int) -> None:
     """Show recordings in a browser on this machine; works offline. Ctrl-C ends it."""
     from sailviz.recording.views.viewers import serve

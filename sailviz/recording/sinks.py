@@ -6,17 +6,17 @@ Files and viewers can be had at once. Standard output and memory stand alone.
 from __future__ import annotations
 
 import os
-import socket
 import sys
 import webbrowser
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from urllib.parse import quote, urlsplit
+from urllib.parse import quote
 
 import rerun as rr
 
 from sailviz.errors import RecordingError
+from sailviz.recording.addresses import check_answer
 
 STDOUT = "-"
 
@@ -138,17 +138,6 @@ def check_together(sinks: Sequence[Sink], wanted: Sequence[Wanted]) -> None:
     paths = [path.resolve() for path in wanted if isinstance(path, Path)]
     if len(set(paths)) < len(paths):
         raise RecordingError(f"the same file is given twice: {max(paths, key=paths.count)}")
-
-
-def check_answer(url: str) -> None:
-    """Raise RecordingError unless something listens at a viewer's address: the stream itself would wait for ever."""
-    parts = urlsplit(url)
-    if not parts.scheme.startswith("rerun") or not parts.hostname:
-        raise RecordingError(f"{url} is no address of a viewer, which looks like rerun+http://127.0.0.1:9876/proxy")
-    try:
-        socket.create_connection((parts.hostname, parts.port or 9876), timeout=3).close()
-    except OSError as error:
-        raise RecordingError(f"no viewer answers at {url}: {error.strerror or error}") from None
 
 
 def discard(sinks: Sequence[Opened]) -> None:

@@ -166,9 +166,9 @@ def not_interrupted() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    pressed: list[bool] = []
+    pressed: list[int] = []
     try:
-        before = signal.signal(signal.SIGINT, lambda *_: pressed.append(True))
+        before = signal.signal(signal.SIGINT, lambda number, _: pressed.append(number))
     except ValueError:  # inside a sub-interpreter
         yield
         return
@@ -176,7 +176,7 @@ def not_interrupted() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
-    if pressed:
+    if any(number != signal.SIGINT or before is not signal.SIG_IGN for number in pressed):
         raise KeyboardInterrupt
 
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from datetime import date, datetime
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, TypeGuard, TypeVar
 
 import numpy as np
 
@@ -13,6 +13,8 @@ from sailviz.constants import MU_EARTH, MU_SUN, RADIUS_EARTH, RADIUS_SUN
 from sailviz.errors import RecordingError
 from sailviz.run import dates, resample, unit_guard
 from sailviz.run.arrays import Body, Event, Reference
+from sailviz.run.devices import LABELS
+from sailviz.words import shortened
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -21,13 +23,7 @@ if TYPE_CHECKING:
     Curves = Mapping[str, ArrayLike] | Iterable[Reference | tuple[str, ArrayLike]]
     Events = Iterable[Event | tuple[str, float]]
 
-LABELS = {
-    "solar-sail": "Solar sail",
-    "electric-sail": "E-sail",
-    "plasma-brake": "Plasma brake",
-    "thruster": "Thruster",
-    "none": "Spacecraft",
-}
+N = TypeVar("N", Event, Reference)
 NOTHING = np.zeros(0)
 BODIES = {"Sun": Body("Sun", MU_SUN, RADIUS_SUN), "Earth": Body("Earth", MU_EARTH, RADIUS_EARTH)}
 INSIDE = 0.9  # of the body's radius: what lies deeper is rather in the wrong unit than in the ground
@@ -41,6 +37,16 @@ class TrajectoryError(RecordingError, ValueError):
         self.faults = tuple(faults)
         count = "1 fault" if len(faults) == 1 else f"{len(faults)} faults"
         super().__init__("\n".join([f"trajectory: {count}", *(f"  {fault}" for fault in faults)]))
+
+
+def is_number(value: object) -> TypeGuard[float]:
+    """Whether a value is a real number, and no truth value."""
+    return isinstance(value, int | float | np.integer | np.floating) and not isinstance(value, bool)
+
+
+def brief(value: object) -> str:
+    """A value as Python writes it, as long as a message bears it."""
+    return shortened(repr(value))
 
 
 class ArrayChecks:
@@ -77,7 +83,8 @@ class ArrayChecks:
             return self.refuse(f"{name}: shape {found.shape}, wanted {wanted}")
         if not np.isfinite(found).all():
             index = np.argwhere(~np.isfinite(found))[0]
-            self.say(f"{name}: row {index[0]} is not a number ({found[tuple(index)]})")
+            row = f"row {index[0]} " if len(index) else ""
+            self.say(f"{name}: {row}is not a number ({found[tuple(index)]})")
         return found
 
     def times(self, values: object, epoch: np.datetime64 | None) -> tuple[np.ndarray, np.datetime64 | None]:
@@ -132,20 +139,23 @@ class ArrayChecks:
             return NOTHING
         if found.ndim > 1 or (found.ndim == 1 and len(found) != rows):
             return self.refuse(f"mass: shape {found.shape}, wanted a number or ({rows},)")
-        if not (found > 0).all():
+        if (found <= 0).any():
             return self.refuse("mass: must be positive")
         return np.broadcast_to(found, rows or 1).copy()
 
     def body(self, name: str | None, mu: float, radius: float | None) -> Body:
         """The central body, by its name or by its mu."""
-        if not isinstance(mu, int | float) or not (0 < mu < np.inf):
-            self.say(f"mu: must be a positive number in m3/s2, not {mu!r}")
+        if not is_number(mu) or not 0 < mu < np.inf:
+            self.say(f"mu: must be a positive number in m3/s2, not {brief(mu)}")
+            return BODIES["Sun"]
+        if name is not None and not isinstance(name, str):
+            self.say(f"body: must be a name, not {brief(name)}")
             return BODIES["Sun"]
         near = next((known for known in BODIES.values() if abs(mu / known.mu - 1) < 1e-3), None)
         if name in BODIES and near is not BODIES[name]:
             self.say(f"body: {name} does not go with mu = {mu:.6g} m3/s2; its own is {BODIES[name].mu:.9g}")
-        if radius is not None and (not isinstance(radius, int | float) or not 0 <= radius < np.inf):
-            self.say(f"radius: must be a number of metres, not {radius!r}")
+        if radius is not None and (not is_number(radius) or not 0 <= radius < np.inf):
+            self.say(f"radius: must be a number of metres, not {brief(radius)}")
             return BODIES["Sun"]
         known = near if name is None else BODIES.get(name)
         default = known.radius if known else 0.0
@@ -162,46 +172,91 @@ class ArrayChecks:
 
     def environment(self, columns: Mapping[str, ArrayLike], rows: int | None) -> dict[str, np.ndarray]:
         """(n,) or (n, 3) columns by their names; truth values stay such."""
-        found = {}
+        found: dict[str, np.ndarray] = {}
+        if not isinstance(columns, Mapping):
+            self.say(f"environment: wanted a mapping of names to columns, not {brief(columns)}")
+            return found
         for name, values in columns.items():
+            if not isinstance(name, str) or not name:
+                self.say(f"environment: a column's name is text, not {brief(name)}")
+                continue
             wanted = f"({rows},) or ({rows}, 3)"
             column = self.array(f"environment[{name!r}]", values, wanted)
             if column is not NOTHING and column.shape not in ((rows,), (rows, 3)):
                 self.say(f"environment[{name!r}]: shape {column.shape}, wanted {wanted}")
             yes_or_no = column is not NOTHING and np.asarray(values).dtype == bool
-            found[str(name)] = column.astype(bool) if yes_or_no else column
+            found[name] = column.astype(bool) if yes_or_no else column
         return found
 
     def references(self, curves: Curves) -> tuple[Reference, ...]:
         """Curves (k, 3) m with their names."""
         found = []
-        for item in curves.items() if isinstance(curves, Mapping) else curves:
-            if isinstance(item, Reference):
-                found.append(item)
-                continue
-            name, given = item
+        for item in self.items("references", curves, Reference):
+            name, given = (item.name, item.points) if isinstance(item, Reference) else item
             points = self.array(f"references[{name!r}]", given, "(k, 3)")
             if points is not NOTHING and (points.ndim != 2 or points.shape[1] != 3):
                 self.say(f"references[{name!r}]: shape {points.shape}, wanted (k, 3)")
-            found.append(Reference(str(name), "target", points))
+            found.append(Reference(name, item.role if isinstance(item, Reference) else "target", points))
         return tuple(found)
+
+    def items(self, argument: str, given: object, kind: type[N]) -> Iterator[N | tuple[str, Any]]:
+        """Things of a kind, or pairs of a name and what it names; whatever else there is is said."""
+        if not isinstance(given, Iterable) or isinstance(given, str | bytes):
+            self.say(f"{argument}: wanted pairs of a name and its values, not {brief(given)}")
+            return
+        for i, item in enumerate(given.items() if isinstance(given, Mapping) else given):
+            if isinstance(item, kind):
+                yield item
+            elif isinstance(item, tuple | list) and len(item) == 2 and isinstance(item[0], str):
+                yield item[0], item[1]
+            else:
+                self.say(f"{argument}: number {i}, {brief(item)}, is no pair of a name and its values")
 
     def events(self, events: Events, time: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> tuple[Event, ...]:
         """Events with states, those between the rows read off a cubic."""
         found = []
-        for item in events:
-            if isinstance(item, Event):
-                found.append(item)
+        for item in self.items("events", events, Event):
+            name, when = (item.name, item.time) if isinstance(item, Event) else item
+            if not is_number(when):
+                self.say(f"events: {name!r} is at a time in s, not at {brief(when)}")
                 continue
-            name, when = item
-            if not isinstance(when, int | float | np.number) or not time[0] <= when <= time[-1]:
+            if not time[0] <= when <= time[-1]:
                 self.say(f"events: {name!r} at {when!r} s is outside the run, {time[0]:.6g} to {time[-1]:.6g} s")
+                continue
+            if isinstance(item, Event):
+                mine = self.array(f"events[{name!r}].state", item.state, "(7,)")
+                if mine is not NOTHING and mine.shape != (7,):
+                    self.say(f"events[{name!r}].state: shape {mine.shape}, wanted (7,)")
+                found.append(item)
                 continue
             state = {"position_m": position, "velocity_m_s": velocity}
             at = np.array([float(when)])
             now = [resample.at(at, column, time, values, state)[0] for column, values in state.items()]
-            found.append(Event(str(name), float(when), np.concatenate([*now, [1.0]])))
+            found.append(Event(name, float(when), np.concatenate([*now, [1.0]])))
         return tuple(sorted(found, key=lambda event: event.time))
+
+    def device(self, word: object) -> str:
+        """A device's word."""
+        if not isinstance(word, str) or word not in LABELS:
+            self.say(f"device: {brief(word)} is not one of {', '.join(LABELS)}")
+            return "none"
+        return word
+
+    def size(self, name: str, value: object, whole: bool = False) -> None:
+        """A length or a count of the craft, if it is given."""
+        if value is None:
+            return
+        if not is_number(value) or not 0 < value < np.inf or (whole and value != int(value)):
+            self.say(f"{name}: must be a {'whole ' if whole else ''}number above 0, not {brief(value)}")
+
+    def lines(self, name: str, values: object) -> tuple[str, ...]:
+        """Lines of text; one line may stand alone."""
+        if isinstance(values, str):
+            return (values,)
+        if not isinstance(values, Iterable):
+            self.say(f"{name}: wanted lines of text, not {brief(values)}")
+            return ()
+        return tuple(map(str, values))
 
     def no_zeros(self, name: str, vectors: np.ndarray) -> None:
         zero = np.flatnonzero(np.linalg.norm(vectors, axis=1) == 0)

@@ -133,13 +133,17 @@ def seconds_of(values: object, epoch: np.datetime64 | None = None) -> tuple[np.n
 
 
 def unmasked(values: object) -> np.ndarray:
-    """An array, masks resolved. DateError where a row is masked: what lies under a mask is not data."""
+    """An array, masks resolved. DateError where a row is masked: what lies under a mask is not data; or where rows have
+    different lengths."""
     if isinstance(values, np.ma.MaskedArray):
         mask = np.ma.getmaskarray(values)
         if mask.any():
             raise DateError(f"row {np.argwhere(mask)[0][0]} is masked")
         return np.asarray(values.data)
-    return np.asarray(values)
+    try:
+        return np.asarray(values)
+    except (TypeError, ValueError):  # rows of different lengths
+        raise DateError("is not an array of numbers") from None
 
 
 def numbers(values: object) -> np.ndarray:
@@ -151,5 +155,5 @@ def numbers(values: object) -> np.ndarray:
         raise DateError("is not an array of numbers")
     try:
         return np.array(found, dtype=float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise DateError("is not an array of numbers") from None

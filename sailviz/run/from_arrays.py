@@ -19,8 +19,9 @@ import numpy as np
 from sailviz import ephemeris, frames
 from sailviz.constants import MU_SUN
 from sailviz.elements import elements
-from sailviz.run.array_checks import LABELS, ArrayChecks, TrajectoryError
+from sailviz.run.array_checks import ArrayChecks, TrajectoryError
 from sailviz.run.arrays import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust
+from sailviz.run.devices import LABELS
 from sailviz.version import __version__
 
 if TYPE_CHECKING:
@@ -72,8 +73,13 @@ def trajectory(
         and with an epoch where they are
     Raises TrajectoryError (a ValueError) with every fault at once.
     """
+    check = ArrayChecks()
+    for name, size in (("side", side), ("tether_length", tether_length), ("play_duration", play_duration)):
+        check.size(name, size)
+    check.size("tethers", tethers, whole=True)
+    lines = check.lines("look_for", look_for)
     given = _checked(
-        ArrayChecks(), time, position, velocity, normal, thrust, mass, (body, mu, radius), epoch, device, environment,
+        check, time, position, velocity, normal, thrust, mass, (body, mu, radius), epoch, device, environment,
         references, events,
     )  # fmt: skip
     known_planets = planets and given.body.name == "Sun"
@@ -81,7 +87,7 @@ def trajectory(
         title=str(title),
         family=str(family),
         about=str(about),
-        look_for=tuple(map(str, look_for)),
+        look_for=lines,
         thesis="",
         body=given.body,
         craft=Craft(given.device, LABELS[given.device], side, tethers, tether_length),
@@ -149,10 +155,13 @@ def _checked(
     normals = None if normal is None else check.vectors("normal", normal, rows)
     pushes = np.zeros((rows or 0, 3)) if thrust is None else check.vectors("thrust", thrust, rows)
     masses, centre = check.mass(mass, rows), check.body(*body)
-    kind = device or ("solar-sail" if normal is not None else "thruster" if thrust is not None else "none")
-    if kind not in LABELS:
-        check.say(f"device: {kind!r} is not one of {', '.join(LABELS)}")
-    columns, curves = check.environment(environment or {}, rows), check.references(references)
+    kind = (
+        device
+        if device is not None
+        else ("solar-sail" if normal is not None else "thruster" if thrust is not None else "none")
+    )
+    kind = check.device(kind)
+    columns, curves = check.environment({} if environment is None else environment, rows), check.references(references)
     if check.good:
         check.order(times, places)
     strange = check.units(times, places, velocities, centre) if check.good else ""

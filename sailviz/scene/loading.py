@@ -154,7 +154,7 @@ def build_scene(raw: dict[str, Any], values: Mapping[str, Any], text: str, name:
     """A scene of tables as tomllib gives them, with values put over them. text : of the file they were read from, "" if
     none; name : of the source, for messages. SceneError as for `load_scene`."""
     try:
-        return _validated(overridden(raw, values), text, name, [place_of(key) for key in values])
+        return _validated(overridden(raw, values, name), text, name, [place_of(key) for key in values])
     except RecursionError:
         raise SceneError([_TOO_DEEP], name) from None
 

@@ -8,7 +8,7 @@ import stat
 from pathlib import Path, PureWindowsPath
 from typing import TYPE_CHECKING
 
-from sailviz.words import shown
+from sailviz.words import nearest, shown
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
@@ -49,3 +49,13 @@ def outside(folder: Path, name: str) -> str:
         return ""
     word = next((word for holds, word in KINDS if holds(mode)), "something else")
     return f"{shown(name)} is {word}, not a regular file"
+
+
+def unreadable(folder: Path, name: str) -> str:
+    """Why what lies under a name inside a folder cannot be read, as `outside` says it; "" if it can."""
+    path = folder / name
+    if not path.exists():
+        beside = sorted(item.name for item in folder.iterdir() if item.suffix == path.suffix) if folder.is_dir() else []
+        hint = nearest(name, beside) if beside else ""
+        return f"there is no file {shown(name)} beside this one or below it" + (f". {hint}" if hint else "")
+    return "" if os.access(path, os.R_OK) else f"{shown(name)} cannot be read: permission denied"

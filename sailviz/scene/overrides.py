@@ -10,8 +10,9 @@ from sailviz.errors import Fault, SceneError
 from sailviz.units import UNITS
 
 
-def overridden(raw: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """A deep copy of a scene's tables with dotted keys replaced. SceneError for a key that no place can have."""
+def overridden(raw: Mapping[str, Any], values: Mapping[str, Any], name: str) -> dict[str, Any]:
+    """A deep copy of a scene's tables with dotted keys replaced. name : of the scene, for messages. SceneError for a
+    key that no place can have."""
     result: dict[str, Any] = _copy(raw)
     for key, value in values.items():
         *path, last = key.split(".")
@@ -19,7 +20,7 @@ def overridden(raw: Mapping[str, Any], values: Mapping[str, Any]) -> dict[str, A
         for part in path:
             table = _inner(table, part)
         if not isinstance(table, dict):
-            raise SceneError([Fault(key, "no such place in the scene", given=key)], "--set")
+            raise SceneError([Fault(key, "no such place in the scene", given=key)], name)
         for sibling in same_quantity(last, table):
             del table[sibling]
         table[last] = _copy(value)

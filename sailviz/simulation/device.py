@@ -20,6 +20,7 @@ from sailviz.propagate import low_orbit_callback as low_orbit
 from sailviz.propulsion import electric_sail, plasma_brake, solar_sail, thruster
 from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.run.arrays import Body, Craft
+from sailviz.run.devices import LABELS
 from sailviz.scene.device import Device as DeviceSection
 from sailviz.scene.device import ElectricSail, NoDevice, PlasmaBrake, SolarSail, Thruster
 from sailviz.scene.values import Section
@@ -224,7 +225,7 @@ def _brake_pull(values: Array, states: Array, factor: Array) -> tuple[Array, Arr
 
 DEVICES: dict[type[Section], Device[Any]] = {  # the functions of each record take the class that it stands under
     SolarSail: Device[SolarSail](
-        "Solar sail",
+        LABELS["solar-sail"],
         _solar_sail,
         words=_solar_sail_words,
         size=_solar_sail_size,
@@ -232,10 +233,10 @@ DEVICES: dict[type[Section], Device[Any]] = {  # the functions of each record ta
         strength=_film_strength,
     ),
     ElectricSail: Device[ElectricSail](
-        "E-sail", _electric_sail, size=_electric_size, sail=_electric_name, strength=_electric_strength
+        LABELS["electric-sail"], _electric_sail, size=_electric_size, sail=_electric_name, strength=_electric_strength
     ),
     PlasmaBrake: Device[PlasmaBrake](
-        "Plasma brake",
+        LABELS["plasma-brake"],
         _brake,
         words=_brake_words,
         size=lambda device: {"tether_length": device.tether_length},
@@ -243,8 +244,8 @@ DEVICES: dict[type[Section], Device[Any]] = {  # the functions of each record ta
         columns=_brake_columns,
         pull=_brake_pull,
     ),
-    Thruster: Device[Thruster]("Thruster", _thruster, words=_thruster_words),
-    NoDevice: Device[NoDevice]("Spacecraft", lambda device, scene, design: LoweredDevice(dynamics.NO_DEVICE)),
+    Thruster: Device[Thruster](LABELS["thruster"], _thruster, words=_thruster_words),
+    NoDevice: Device[NoDevice](LABELS["none"], lambda device, scene, design: LoweredDevice(dynamics.NO_DEVICE)),
 }
 
 

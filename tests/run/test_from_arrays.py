@@ -12,9 +12,13 @@ import pytest
 import sailviz
 from sailviz.constants import AU, MU_EARTH, MU_SUN, RADIUS_EARTH
 from sailviz.elements import state
+from sailviz.recording.drawing.devices import CRAFT
 from sailviz.recording.writer import record_trajectory
-from sailviz.run.arrays import Event
+from sailviz.run.arrays import Event, Reference
+from sailviz.run.devices import LABELS
 from sailviz.run.from_arrays import TrajectoryError, trajectory
+from sailviz.scene.units_in_keys import words_of_kind
+from sailviz.simulation.device import DEVICES
 
 SCRIPT = Path(__file__).parents[2] / "scenes" / "scripts" / "from_oem.py"
 ROWS = 50
@@ -284,3 +288,62 @@ def test_an_environment_may_hold_truth_values_and_vectors(tmp_path):
     assert read["sunlit"].dtype == bool
     assert np.array_equal(read["sunlit"], lit)
     assert np.array_equal(read["field_T"], field)
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        ({"mass": np.nan}, "mass: is not a number"),
+        ({"mass": [1.0] * 49 + [np.inf]}, "mass: row 49 is not a number"),
+        ({"mass": 1 + 0j}, "mass: holds complex numbers"),
+        ({"mass": "heavy"}, "mass: not an array of numbers"),
+        ({"thrust": np.ones((ROWS, 3), complex)}, "thrust: holds complex numbers"),
+        ({"normal": [[1, 0], [1, 0, 0]]}, "normal: not an array of numbers"),
+        ({"environment": [1, 2]}, "environment: wanted a mapping"),
+        ({"environment": {3: np.ones(ROWS)}}, "environment: a column's name is text, not 3"),
+        ({"environment": {"air_K": np.ones(ROWS, complex)}}, "holds complex numbers"),
+        ({"environment": {"air_K": {}}}, "environment['air_K']"),
+        ({"environment": {"air_K": ["warm"] * ROWS}}, "not an array of numbers"),
+        ({"events": 5}, "events: wanted pairs"),
+        ({"events": "half"}, "events: wanted pairs"),
+        ({"events": [("half",)]}, "events: number 0"),
+        ({"events": [(1.0, "half")]}, "events: number 0"),
+        ({"events": [("half", "noon")]}, "is at a time in s"),
+        ({"events": [("half", np.nan)]}, "outside the run"),
+        ({"events": [("half", 1j)]}, "is at a time in s"),
+        ({"events": [("half", True)]}, "is at a time in s"),
+        ({"events": [Event("late", 1e12, np.zeros(7))]}, "outside the run"),
+        ({"events": [Event("odd", 1.0, np.zeros(6))]}, "wanted (7,)"),
+        ({"references": 5}, "references: wanted pairs"),
+        ({"references": {"orbit": np.zeros((4, 2))}}, "wanted (k, 3)"),
+        ({"references": [np.zeros((4, 3))]}, "references: number 0"),
+        ({"references": {"orbit": np.full((4, 3), np.nan)}}, "row 0 is not a number"),
+        ({"references": [Reference("orbit", "target", np.zeros(3))]}, "wanted (k, 3)"),
+        ({"device": ["solar-sail"]}, "device: "),
+        ({"device": ""}, "device: '' is not one of"),
+        ({"mu": True}, "mu: must be a positive number"),
+        ({"body": 3}, "body: must be a name"),
+        ({"radius": np.nan}, "radius: must be"),
+        ({"side": -1}, "side: must be"),
+        ({"tethers": 2.5}, "tethers: must be a whole number"),
+        ({"tether_length": np.inf}, "tether_length: must be"),
+        ({"play_duration": 0}, "play_duration: must be"),
+        ({"look_for": 3}, "look_for: wanted lines"),
+    ],
+)
+def test_what_is_no_argument_is_refused_in_a_sentence(more, words):
+    with pytest.raises(TrajectoryError) as caught:
+        trajectory(*ellipse(), **more)
+    (fault,) = caught.value.faults
+    assert words in fault
+
+
+def test_arguments_of_other_number_types_are_taken():
+    run = trajectory(*ellipse(), mu=np.float32(MU_SUN), mass=np.int16(7), tethers=np.int64(8), look_for="one line")
+    assert (run.mass == 7).all()
+    assert run.setting.look_for == ("one line",)
+
+
+def test_the_devices_of_arrays_are_those_of_scenes_and_those_that_are_drawn():
+    assert set(LABELS) == set(CRAFT)
+    assert {word: record.label for kind, record in DEVICES.items() for word in words_of_kind(kind)} == LABELS

@@ -115,3 +115,17 @@ def test_a_sweep_names_its_scene_in_its_own_folder(folder):
         file.write_text(f'[sweep]\nscene = "{name}"\n[[vary]]\nkey = "propagation.duration_d"\nvalues = [1, 2]\n')
         with pytest.raises(SceneError, match=r"sweep\.scene \(line 2\)"):
             define(file)
+
+
+def test_a_measured_wind_that_is_not_there_is_told_before_the_flight(tmp_path):
+    (tmp_path / "winds.csv").touch()
+    file = tmp_path / "scene.toml"
+    file.write_text(SCENE.format(name='"wind.csv"'))
+    with pytest.raises(SceneError) as caught:
+        load_scene(file)
+    (fault,) = caught.value.faults
+    assert fault.where == "environment.solar_wind.file"
+    assert "there is no file" in fault.what
+    assert 'Did you mean "winds.csv"?' in fault.what
+    (tmp_path / "wind.csv").touch()
+    load_scene(file)

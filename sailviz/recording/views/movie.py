@@ -62,11 +62,7 @@ def make_movie(
     """
     began = time.monotonic()
     encode = check_format(out)
-    count = round(seconds * fps)
-    if not (seconds > 0 and 0 < fps <= 60 and 1 < count <= MOST_FRAMES):
-        raise RecordingError(
-            f"a movie has 2 to {MOST_FRAMES:,} frames, at most 60 in a second, not {seconds:g} s at {fps:g} per second"
-        )
+    count = frames_of(seconds, fps)
     first, last = fraction_of(path, start), fraction_of(path, end)
     if view is not None:
         size, panels = (size[0] + FRAME[0], size[1] + FRAME[1]), False
@@ -88,6 +84,15 @@ def make_movie(
         if progress:
             progress(1.0)
     return MovieReport(Path(out), report.size, count, tuple(errors), tuple(warnings), time.monotonic() - began)
+
+
+def frames_of(seconds: float, fps: float) -> int:
+    """How many frames a movie has. RecordingError where that is not 2 to MOST_FRAMES, or more than 60 in a second."""
+    if not (0 < seconds < np.inf and 0 < fps <= 60 and 1 < round(seconds * fps) <= MOST_FRAMES):
+        raise RecordingError(
+            f"a movie has 2 to {MOST_FRAMES:,} frames, at most 60 in a second, not {seconds:g} s at {fps:g} per second"
+        )
+    return round(seconds * fps)
 
 
 def check_format(out: FilePath) -> Encoder:

@@ -1,4 +1,4 @@
-"""Whether the files that a scene names lie in its folder."""
+"""Whether the files that a scene names lie in its folder and can be read."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.ensembles import placed_ensembles
 from sailviz.scene.environment import ReplayedWind
-from sailviz.scene.named_files import folder_of, outside
+from sailviz.scene.named_files import folder_of, outside, unreadable
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
@@ -18,4 +18,5 @@ def winds(scene: Scene) -> Faults:
     placed = [("environment.solar_wind", scene.environment.solar_wind)]
     placed += [(f"{place}.solar_wind", item.solar_wind) for place, item in placed_ensembles(scene) if item.solar_wind]
     named = [(f"{place}.file", wind.file) for place, wind in placed if isinstance(wind, ReplayedWind)]
-    return [(place, what) for place, name in named if (what := outside(folder_of(scene), name))]
+    folder = folder_of(scene)
+    return [(place, what) for place, name in named if (what := outside(folder, name) or unreadable(folder, name))]

@@ -1,0 +1,62 @@
+"""The JSON Schema of scene files agrees with the checker."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from datetime import date, datetime
+
+import jsonschema
+import pytest
+
+from sailviz.scene.loading import schema
+from sailviz.shipped import shipped_scenes
+from sailviz.units import UNITS
+
+RAW = {name: tomllib.loads(path.read_text(encoding="utf-8")) for name, path in shipped_scenes().items()}
+SMALL = {
+    "title": "small",
+    "start": {"kind": "circular", "radius_au": 1},
+    "device": {"kind": "none"},
+    "propagation": {"duration_d": 10},
+}
+
+
+def with_parts(**parts):
+    return {**SMALL, **parts}
+
+
+def plain(value):
+    """As an editor's JSON Schema validator sees TOML: dates are strings there."""
+    if isinstance(value, dict):
+        return {key: plain(part) for key, part in value.items()}
+    if isinstance(value, list):
+        return [plain(part) for part in value]
+    return value.isoformat() if isinstance(value, (date, datetime)) else value
+
+
+@pytest.mark.parametrize("name", sorted(RAW))
+def test_json_schema_accepts_shipped_scenes_and_rejects_a_misspelt_key(name):
+    validator = jsonschema.Draft202012Validator(schema())
+    validator.check_schema(schema())
+    good = plain(RAW[name])
+    assert [error.message for error in validator.iter_errors(good)] == []
+    for where in ("start", "device", "propagation"):
+        bad = copy.deepcopy(good)
+        key = next(key for key in bad[where] if key != "kind")
+        bad[where][key + "x"] = bad[where].pop(key)
+        assert not validator.is_valid(bad)
+
+
+def test_schema_wants_a_unit_and_only_one():
+    validator = jsonschema.Draft202012Validator(schema())
+    assert validator.is_valid(SMALL)
+    assert not validator.is_valid(with_parts(propagation={"duration": 10}))
+    assert not validator.is_valid(with_parts(propagation={"duration_d": 10, "duration_s": 10}))
+    assert not validator.is_valid(with_parts(propagation={}))
+
+
+def test_schema_knows_every_unit_of_every_quantity():
+    properties = schema()["$defs"]["Propagation"]["properties"]
+    assert {f"duration_{unit}" for unit in UNITS["time"]} <= set(properties)
+    assert "duration" not in properties

@@ -53,8 +53,10 @@ def from_frame(axes: ArrayLike, components: ArrayLike) -> np.ndarray:
 
 
 def body_axes(normal: ArrayLike, hint: np.ndarray) -> np.ndarray:
-    """Frame of a sail: z along the normal, x as close to `hint` as possible. (n, 3), (n, 3) -> (n, 3, 3), columns."""
+    """Frame of a sail: z along the normal, x as close to `hint` as possible. (n, 3), (n, 3) -> (n, 3, 3), columns. A
+    zero normal, of a stowed sail, stands for the z axis."""
     z = unit(normal)
+    z = np.where(np.any(z != 0, axis=-1, keepdims=True), z, [0.0, 0.0, 1.0])
     x = hint - np.sum(hint * z, axis=-1, keepdims=True) * z
     weak = np.linalg.norm(x, axis=-1, keepdims=True) < 1e-9
     spare = np.where(np.abs(z[..., 2:3]) < 0.9, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])

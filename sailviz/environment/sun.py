@@ -43,6 +43,14 @@ def sun_parameters(epoch: np.datetime64 | None = None, right_ascension: float = 
     return Parameters(*(float(x) for x in (*angles, *np.radians(ephemeris.SUN_CENTRE), *tilt)))
 
 
+def date_of(right_ascension: float) -> np.datetime64:
+    """UTC of a moment of the year 2000 at which the mean Sun has a right ascension (rad): the season that it stands
+    for."""
+    at_j2000, rate = np.radians(ephemeris.SUN_MEAN_LONGITUDE)
+    days = float(_turn(right_ascension - at_j2000)) / rate
+    return np.datetime64("2000-01-01T12:00:00", "s") + np.timedelta64(round(days * DAY), "s")
+
+
 def _turn(angle):
     return np.remainder(angle, 2 * np.pi)
 

@@ -10,9 +10,9 @@ module-level function of SIGNATURE beside its formula, and `callback(function, n
         s, p, a = carray(state, (STATE,)), carray(own, (1,), NUMBERS)[0], carray(out, (4,))
 
 `layout` and STATE come from sailviz.compiled; Parameters is a NamedTuple of floats, the callback's own numbers. What
-comes out, four numbers: of a steering law the unit normal and the throttle; of a device the acceleration m/s2 at thrust
-factor `number` and the mass flow kg/s; of a force the acceleration m/s2 and nothing, `number` the thrust factor; of a
-voltage control the thrust factor from break `number` on.
+comes out, four numbers: of a steering law the normal, made a unit vector (zero: no thrust), and the throttle; of a
+device the acceleration m/s2 at thrust factor `number` and the mass flow kg/s; of a force the acceleration m/s2 and
+nothing, `number` the thrust factor; of a voltage control the thrust factor from break `number` on.
 """
 
 from __future__ import annotations

@@ -213,8 +213,10 @@ def direction(t, x, y, z, vx, vy, vz, m, ux, uy, uz, p):
         nx, ny, nz = vx * inverse, vy * inverse, vz * inverse
     elif kind == attitude.USER:
         nx, ny, nz = user_vector(p.callbacks.user_steering, t, x, y, z, vx, vy, vz, m)
+        nx, ny, nz, on = attitude.unit_direction(nx, ny, nz, 1.0)
     else:
         nx, ny, nz, on = call(p.callbacks.steering, p.places.steering, t, x, y, z, vx, vy, vz, m, 0.0, 0.0, 0.0, p, 1.0)
+        nx, ny, nz, on = attitude.unit_direction(nx, ny, nz, on)
     return nx, ny, nz, ux * nx + uy * ny + uz * nz, on
 
 

@@ -46,10 +46,10 @@ def surroundings(t, x, y, z, r, p):
 
 
 @called
-def air_density(r, latitude, local_time, altitude, f107, p, tables):
+def air_density(t, r, latitude, local_time, altitude, f107, p, tables):
     """Mass density of the air, kg/m3."""
     if p.air.kind == atmosphere.TABLED:
-        return atmosphere.lookup(tables, p.places.air, latitude, local_time, altitude, f107)
+        return atmosphere.lookup(tables, p.places.air, t, latitude, local_time, altitude, f107)
     return ionosphere.exponential(r, p.air.reference_radius, p.air.density, p.air.scale_height)
 
 
@@ -148,7 +148,7 @@ def _acceleration(t, state, parameters, own, factor, out):
     latitude, local_time, altitude, f107, light = surroundings(t, x, yy, z, r, p)
     ax, ay, az = 0.0, 0.0, 0.0
     if p.air.kind == atmosphere.TABLED:
-        k = air_density(r, latitude, local_time, altitude, f107, p, tables) * p.air.drag_area / m
+        k = air_density(t, r, latitude, local_time, altitude, f107, p, tables) * p.air.drag_area / m
         ax, ay, az = atmosphere.air_drag(x, yy, z, vx, vy, vz, p.surface.rotation, k)
     if factor != 0.0 and p.brake.present != 0:
         n, ion_mass = plasma_at(r, latitude, local_time, altitude, f107, p, tables)
@@ -186,7 +186,7 @@ def observe_low_orbit(time, states, factor, parameters):
         out[LATITUDE, i], out[LOCAL_TIME, i], out[ALTITUDE, i] = latitude, local_time % (2.0 * np.pi), altitude
         out[SOLAR_FLUX, i], out[LIGHT, i] = f107, light
         if p.air.kind != atmosphere.NONE:
-            density = air_density(r, latitude, local_time, altitude, f107, p, tables)
+            density = air_density(t, r, latitude, local_time, altitude, f107, p, tables)
             k = density * p.air.drag_area / m
             ax, ay, az = atmosphere.air_drag(x, y, z, vx, vy, vz, p.surface.rotation, k)
             out[AIR_DENSITY, i], out[AIR_DRAG, i] = density, m * np.sqrt(ax * ax + ay * ay + az * az)

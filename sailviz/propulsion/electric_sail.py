@@ -136,10 +136,12 @@ def characteristic_acceleration(
     wind_potential: npt.ArrayLike = WIND_POTENTIAL,
 ) -> np.ndarray:
     """a_c in m/s2 from hardware: number of tethers, length m of each, voltage V, total mass kg, dynamic pressure Pa
-    at 1 au, wind_potential V. Source: (3.40) a_c = N L sigma / m, (3.41) sigma = 0.18 max(0, V - V_w) sqrt(eps0 p)."""
+    at 1 au, wind_potential V. Source: (3.40) a_c = N L sigma / m, (3.41) sigma = 0.18 max(0, V - V_w) sqrt(eps0 p).
+    Scalars or arrays, broadcast; NaN where the mass is not positive."""
     sigma = (
         0.18
         * np.maximum(0.0, np.subtract(voltage, wind_potential))
         * np.sqrt(np.multiply(VACUUM_PERMITTIVITY, pressure))
     )
-    return np.multiply(tethers, length) * sigma / np.asarray(mass, dtype=float)
+    mass = np.asarray(mass, dtype=float)
+    return np.multiply(tethers, length) * sigma / np.where(mass > 0, mass, np.nan)

@@ -58,12 +58,15 @@ class Film:
         """a_c in m/s2 at 1 au, facing the Sun, from the lightness number or from area m2 and mass kg.
 
         (3.3), (3.5), (3.13), (3.22). For an imperfect film of given efficiency the lightness number is that of the
-        ideal film of the same loading, as in (3.12).
+        ideal film of the same loading, as in (3.12). ValueError for a size that is no positive number.
         """
         if lightness is not None:
             return self.efficiency * lightness * GRAVITY_AT_1_AU
         if area is None or mass is None:
             raise TypeError("a characteristic acceleration takes a lightness number, or an area and a mass")
+        for name, size in (("area", area), ("mass", mass)):
+            if isinstance(size, complex) or not 0 < size < np.inf:
+                raise ValueError(f"the {name} must be a positive number, not {size!r}")
         return self.efficiency * 2 * RADIATION_PRESSURE * (area / mass) * self.total
 
     def lightness(self, characteristic_acceleration: float) -> float:

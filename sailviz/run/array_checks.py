@@ -134,8 +134,10 @@ class ArrayChecks:
 
     def mass(self, values: ArrayLike, rows: int | None) -> np.ndarray:
         """(n,) kg from a number or a column."""
+        if np.asarray(values).dtype.kind == "b":
+            return self.refuse(f"mass: {np.asarray(values).flat[0]} is a truth value, wanted a number or (n,)")
         found = self.array("mass", values, "a number or (n,)")
-        if found is NOTHING:
+        if found is NOTHING or not np.isfinite(found).all():
             return NOTHING
         if found.ndim > 1 or (found.ndim == 1 and len(found) != rows):
             return self.refuse(f"mass: shape {found.shape}, wanted a number or ({rows},)")

@@ -120,7 +120,14 @@ def _tabled_air(part: MsisAtmosphere, place: Place) -> dict[str, Any]:
     flux = place.scene.environment.solar_flux
     if flux is None:
         return found
-    return found | {"air_table": atmosphere.table(atmosphere.LEVELS if flux == "cycle" else flux, part.ap)}
+    levels = atmosphere.LEVELS if flux == "cycle" else flux
+    dates = season_start(place.scene, place.epoch), place.scene.propagation.duration
+    return found | {"air_table": atmosphere.table_over(*dates, levels, part.ap)}
+
+
+def season_start(scene: Scene, epoch: np.datetime64 | None) -> np.datetime64:
+    """Date of a run's start; without an epoch one on which the mean Sun stands where the scene says."""
+    return sun.date_of(scene.environment.sun_right_ascension or 0.0) if epoch is None else epoch
 
 
 # ---------------------------------------------------------------- bodies

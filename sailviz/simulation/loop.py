@@ -33,7 +33,8 @@ def simulate(scene: SceneSource, *, steering: object = None, force: object = Non
 
     steering : own attitude law, force : own additional acceleration in m/s2; each a numba.cfunc of
     sailviz.propagate.callbacks.USER_SIGNATURE or an @njit function (t, x, y, z, vx, vy, vz, m) -> three floats, SI,
-    inertial. Raises SceneError if the scene asks for something infeasible, PropagationError if the integration
+    inertial. The law's direction may have any length and is made a unit vector; a zero vector is a stowed sail, without
+    thrust. Raises SceneError if the scene asks for something infeasible, PropagationError if the integration
     breaks down.
     """
     return join(list(simulate_blocks(scene, steering=steering, force=force)))

@@ -15,6 +15,8 @@ from sailviz.design import decay
 from sailviz.environment import atmosphere, ionosphere
 from sailviz.errors import Fault, SceneError
 from sailviz.propulsion.plasma_brake import SPINNING, force_per_length
+from sailviz.simulation.bodies import epoch_of
+from sailviz.simulation.environment import season_start
 from sailviz.simulation.steering import steering_of
 
 
@@ -25,7 +27,8 @@ class QuasiCircular:
         """position (3,) m and velocity (3,) m/s of the start, whose mean semi-major axis is where the descent begins.
 
         Plasma and air are averaged over local time and the latitudes of the orbit: a sun-synchronous orbit, which keeps
-        its local time, falls up to 9 % faster or slower at solar minimum, 4 % at medium and 1 % at maximum.
+        its local time, falls up to 9 % faster or slower at solar minimum, 4 % at medium and 1 % at maximum. The air
+        is the mean over the dates for which the run is planned, or over a year.
         SceneError, naming the scene, where there is no such descent.
         """
         device, around = scene.device, scene.environment
@@ -110,5 +113,6 @@ def _air(scene, inclination, bulge):
         return lambda h: ionosphere.exponential.py_func(
             h + bulge, air.reference_altitude, air.density, air.scale_height
         )
-    altitude, density = atmosphere.mean_profile(scene.environment.solar_flux, air.ap, inclination)
+    days = atmosphere.days_over(season_start(scene, epoch_of(scene)), scene.propagation.duration)
+    altitude, density = atmosphere.mean_profile(scene.environment.solar_flux, air.ap, inclination, days)
     return altitude - bulge, density

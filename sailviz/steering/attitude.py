@@ -69,6 +69,20 @@ def direction_parameters(pitch: float, clock: float) -> Components:
 
 
 @inlined
+def unit_direction(nx, ny, nz, throttle):
+    """A direction of any length, as a law of one's own gives it, made a unit vector; and the throttle, 0 where there is
+    no direction (the zero vector: a stowed sail). What is a unit vector to rounding stays as it is, to the last bit."""
+    if abs(nx * nx + ny * ny + nz * nz - 1.0) < 1e-12:
+        return nx, ny, nz, throttle
+    largest = max(abs(nx), abs(ny), abs(nz))
+    if largest == 0.0:
+        return 0.0, 0.0, 0.0, 0.0
+    nx, ny, nz = nx / largest, ny / largest, nz / largest  # so that no square is too large or too small for a number
+    inverse = 1.0 / np.sqrt(nx * nx + ny * ny + nz * nz)
+    return nx * inverse, ny * inverse, nz * inverse, throttle
+
+
+@inlined
 def orbital_direction(ux, uy, uz, x, y, z, vx, vy, vz, n_r, n_t, n_h):
     """n_r r_hat + n_t t_hat + n_h h_hat in inertial axes; u = r_hat. NaN where the craft has no angular momentum."""
     hx, hy, hz = y * vz - z * vy, z * vx - x * vz, x * vy - y * vx

@@ -5,8 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from sailviz.constants import MU_EARTH, RADIUS_EARTH, YEAR
-from sailviz.environment.atmosphere import GEOMAGNETIC, LEVELS, SEASONS, density, mean_profile, table
+import sailviz
+from sailviz.constants import DAY, MU_EARTH, RADIUS_EARTH, YEAR
+from sailviz.environment.atmosphere import (
+    GEOMAGNETIC,
+    LEVELS,
+    SEASONS,
+    days_over,
+    density,
+    mean_profile,
+    table,
+    table_over,
+)
+from sailviz.environment.sun import date_of, sun_parameters
 
 HOUR = 2 * np.pi / 24
 EVEN = {"all_ut_effects": 0, "longitudinal": 0, "mixed_ut_long": 0, "mixed_ap_ut_long": 0}
@@ -180,3 +191,102 @@ def test_the_solar_levels_may_have_one_ap_or_one_each():
         table((70.0, 100.0), (5.0, 5.0, 5.0))
     with pytest.raises(ValueError, match="must increase"):
         table((100.0, 70.0), 5.0)
+
+
+# ---------------------------------------------------------------- seasons
+def on_dates(places, dates, f107, ap):
+    """pymsis itself, each place on a date of its own. kg/m3, (n,)."""
+    days = dates.astype("datetime64[D]")
+    found = np.empty(len(days))
+    for day in np.unique(days):
+        here = days == day
+        found[here] = msis(*(axis[here] for axis in places), f107, ap, (str(day),), **EVEN)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("start", "days"), [("2026-03-20T05:00", 0.2), ("2026-12-20", 40), ("2024-02-01", 104), ("2026-05-03T20:00", 1500)]
+)
+@pytest.mark.parametrize(("f107", "ap"), [(70.0, 5.0), (200.0, 15.0)])
+def test_the_table_over_dates_is_as_close_to_pymsis_on_each_of_them_as_its_docstring_says(start, days, f107, ap):
+    places = random_places(400, 150e3, 1500e3)
+    time = np.random.default_rng(3).choice(np.linspace(0, days * DAY, 20), 400)
+    dates = np.datetime64(start, "s") + time.astype("timedelta64[s]")
+    found = density(*places, f107, table_over(start, days * DAY, f107, ap), time)
+    error = np.log(found / on_dates(places, dates, f107, ap))
+    assert np.sqrt(np.mean(error**2)) < 0.014  # 0.9 % of the table in space, 0.7 % of the year, half a day
+    assert np.abs(error).max() < 0.07
+
+
+def test_a_year_comes_round_and_its_levels_are_the_suns():
+    row = table_over("2026-03-20", 3000 * DAY)
+    here = 1.1, 2.0, 6e5
+    year = 365.25 * DAY
+    first, again = (density(*here, 120.0, row, 1e7 + k * year) for k in (0, 7))
+    assert first == pytest.approx(again, rel=1e-10)
+    edge = density(*here, 120.0, row, np.array([-1, 1]) + year * (1 - 78.0 / 365.25))  # New Year
+    assert edge[0] == pytest.approx(edge[1], rel=1e-5)
+    alone = density(*here, 145.0, table_over("2026-03-20", 3000 * DAY, 145.0, 10.0), 1e7)
+    assert density(*here, 145.0, row, 1e7) == pytest.approx(alone, rel=1e-12)
+
+
+def test_the_air_of_the_north_is_five_times_as_dense_in_one_season_as_in_another():
+    spread = [
+        density(np.radians(70), 0.0, 7e5, 70.0, table_over(f"2026-{month:02}-15", 0, 70.0, 5.0))
+        for month in range(1, 13)
+    ]
+    assert max(spread) / min(spread) == pytest.approx(4.8, abs=0.2)
+
+
+@pytest.mark.parametrize("given", [{"epoch": "2026-03-20T12:00:00"}, {"epoch": "2026-06-20T12:00:00"}])
+def test_a_run_meets_the_air_of_its_own_date(given):
+    run = sailviz.simulate(low_flight(**given))
+    columns = run.environment
+    flux = np.full(len(run), 145.0)
+    latitude = np.arcsin(run.position[:, 2] / np.linalg.norm(run.position, axis=1))
+    epoch = np.datetime64(given["epoch"])
+    hour = local_hour(run, sun_parameters(epoch).mean_longitude)
+    height = np.linalg.norm(run.position, axis=1) - RADIUS_EARTH
+    dates = epoch.astype("datetime64[s]") + run.time.astype("timedelta64[s]")
+    truth = on_dates((latitude, hour % (2 * np.pi), height), dates, flux[0], 10.0)
+    assert columns["air_density_kg_m3"] == pytest.approx(truth, rel=0.05)
+
+
+def local_hour(run, longitude):
+    """Mean local time, rad from midnight, where the mean Sun begins at a longitude (rad)."""
+    return np.arctan2(run.position[:, 1], run.position[:, 0]) - longitude - 2 * np.pi * run.time / YEAR + np.pi
+
+
+def low_flight(**values):
+    return {
+        "title": "through the air",
+        "body": "earth",
+        "start": {"kind": "circular", "altitude_km": 400, "inclination_deg": 98},
+        "device": {"kind": "none", "mass_kg": 5, "drag_area_m2": 0.1},
+        "environment": {"solar_flux_sfu": 145, "atmosphere": {"kind": "nrlmsis-2.1", "ap": 10}},
+        "propagation": {"duration_h": 3, "outputs": 100},
+    } | values
+
+
+def test_without_a_date_the_sun_says_which_season_it_is():
+    """A Sun at 90 deg of right ascension stands in June."""
+    around = low_flight()["environment"] | {"sun_right_ascension_deg": 90}
+    sun = sailviz.simulate(low_flight(environment=around)).environment["air_density_kg_m3"]
+    june = table_over("2026-06-21T12:00", 1e4, 145.0, 10.0)
+    march = table_over("2026-03-20T12:00", 1e4, 145.0, 10.0)
+    run = sailviz.simulate(low_flight(environment=around))
+    r = np.linalg.norm(run.position, axis=1)
+    hour = local_hour(run, np.pi / 2)
+    place = np.arcsin(run.position[:, 2] / r), hour, r - RADIUS_EARTH, 145.0
+    assert sun == pytest.approx(density(*place, june), rel=0.01)
+    assert np.abs(sun / density(*place, march) - 1).max() > 0.2
+    assert abs((date_of(np.pi / 2) - np.datetime64("2000-06-21")) / np.timedelta64(1, "D")) < 2
+
+
+def test_the_days_that_stand_for_a_run_lie_within_it():
+    assert days_over("2026-03-20T06:00", 3600.0) == ("2026-03-20",)
+    assert days_over("2026-03-20", 30 * DAY) == ("2026-03-27", "2026-04-11")
+    year = days_over("2026-03-20", 9000 * DAY)
+    assert len(year) == 8
+    assert np.all(np.diff(np.array(year, dtype="datetime64[D]")).astype(int) >= 45)
+    assert year[-1] < "2027-03-20"

@@ -23,7 +23,7 @@ def surroundings(t, x, y, z, record, tables, air_at, strengths, out):
     sx, sy, sz = sun.direction(t, p.sun)
     n, m = ionosphere.lookup(tables, 0, latitude, local_time, altitude, f107)
     out[0], out[1], out[2], out[3] = f107, altitude, n, m
-    out[4] = atmosphere.lookup(tables, air_at, latitude, local_time, altitude, f107)
+    out[4] = atmosphere.lookup(tables, air_at, t, latitude, local_time, altitude, f107)
     out[5] = eclipse.sunlit(eclipse.CONE, x, y, z, sx, sy, sz, RADIUS_EARTH)
     out[6] = eclipse.sunlit(eclipse.CYLINDER, x, y, z, sx, sy, sz, RADIUS_EARTH)
     out[7] = magnetic.alignment(x, y, z, 1.0 / r, 0.3, x / r, y / r, z / r)
@@ -33,7 +33,7 @@ def surroundings(t, x, y, z, record, tables, air_at, strengths, out):
 
 
 def test_compiled_and_interpreted_functions_are_one():
-    plasma, air = ionosphere.table(), atmosphere.table()
+    plasma, air = ionosphere.table(), atmosphere.table_over(EPOCH, 900 * DAY)
     seen, level = sun.sun_parameters(EPOCH), solar_level.cycle(2024.2)
     record = np.zeros(1, PARAMETERS)
     record["sun"], record["solar_level"] = seen, level
@@ -47,7 +47,7 @@ def test_compiled_and_interpreted_functions_are_one():
     place = np.arcsin(z / r), sun.local_time.py_func(t, x, y, seen), altitude, f107
     light = sun.direction.py_func(t, seen)
     expected = [
-        f107, altitude, *ionosphere.density(*place), atmosphere.density(*place),
+        f107, altitude, *ionosphere.density(*place), atmosphere.density(*place, air, t),
         eclipse.conical.py_func(x, y, z, *light, RADIUS_EARTH),
         eclipse.cylindrical.py_func(x, y, z, *light, RADIUS_EARTH),
         magnetic.alignment.py_func(x, y, z, 1 / r, 0.3, x / r, y / r, z / r),

@@ -178,6 +178,12 @@ def test_below_the_potential_of_the_wind_a_tether_pushes_nothing():
     assert characteristic_acceleration(1, 1.0, np.array([500.0, 2e3]), 1.0)[0] == 0
 
 
+def test_without_a_mass_there_is_no_acceleration():
+    found = characteristic_acceleration(1, 1.0, 20e3, np.array([1.0, 0.0, -1.0, np.nan]))
+    assert np.isfinite(found).tolist() == [True, False, False, False]
+    assert np.isnan(characteristic_acceleration(1, 1.0, 20e3, 0))
+
+
 def test_one_vector_or_many_give_the_same():
     rng = np.random.default_rng(0)
     position, normal = AU * (1 + rng.random((4, 3))), rng.normal(size=(4, 3))

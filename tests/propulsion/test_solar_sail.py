@@ -134,6 +134,13 @@ def test_lightness_number_and_loading_give_the_characteristic_acceleration():
     assert film("eta-perfect").characteristic_acceleration(area=100, mass=2) == pytest.approx(4.563e-4 * 0.85)
 
 
+@pytest.mark.parametrize("size", [0, -1.0, np.nan, np.inf, 1j, np.float64(-2)])
+@pytest.mark.parametrize("name", ["area", "mass"])
+def test_a_sail_has_an_area_and_a_mass_or_there_is_no_acceleration(name, size):
+    with pytest.raises(ValueError, match=f"the {name} must be a positive number"):
+        film("ideal").characteristic_acceleration(**{"area": 100.0, "mass": 2.0, name: size})
+
+
 def test_lightsail_2_and_ikaros_feel_what_was_published():
     """LightSail 2, 32 m2, perfect: 0.2920 mN, quoted 0.291. IKAROS, 196 m2: the measured 1.12 mN lies between a pure
     absorber and the film of 2015."""

@@ -210,6 +210,58 @@ def ahead(t, x, y, z, vx, vy, vz, m):
     return c * ux + s * tx, c * uy + s * ty, c * uz + s * tz
 
 
+@numba.njit
+def ahead_at_length(t, x, y, z, vx, vy, vz, m):
+    """The same, 2.5 long before 300 days and 1e-200 long after them."""
+    a, b, c = ahead(t, x, y, z, vx, vy, vz, m)
+    k = 2.5 if t < 300 * 86400.0 else 1e-200
+    return k * a, k * b, k * c
+
+
+@numba.njit
+def stowed_at_last(t, x, y, z, vx, vy, vz, m):
+    """The same for 300 days, and then nothing."""
+    a, b, c = ahead(t, x, y, z, vx, vy, vz, m)
+    k = 1.0 if t < 300 * 86400.0 else 0.0
+    return k * a, k * b, k * c
+
+
+AHEAD = {
+    "title": "ahead",
+    "start": {"kind": "circular", "radius_au": 1},
+    "steering": {"kind": "orbital", "pitch_deg": 35, "clock_deg": 90},
+    "propagation": {"duration_d": 400, "outputs": 401, "tolerance": 1e-12},
+}
+DEVICES = {
+    "solar sail": {"kind": "solar-sail", "lightness_number": 0.05},
+    "electric sail": {"kind": "electric-sail", "characteristic_acceleration_mm_s2": 0.5},
+    "thruster": {"kind": "thruster", "thrust_mN": 50, "mass_kg": 500, "specific_impulse_s": 3000},
+}
+
+
+@pytest.mark.parametrize("device", DEVICES.values(), ids=DEVICES)
+def test_a_users_direction_of_any_length_gives_the_thrust_of_a_unit_vector(device):
+    sailing = sailviz.load_scene(AHEAD | {"device": device})
+    long, known = simulate(sailing, steering=ahead_at_length), simulate(sailing)
+    assert np.linalg.norm(long.attitude.normal, axis=1) == pytest.approx(1, abs=1e-14)
+    assert np.linalg.norm(long.position - known.position, axis=1).max() < 1e-9 * AU
+    assert long.mass == pytest.approx(known.mass, rel=1e-11)
+
+
+@pytest.mark.parametrize("device", DEVICES.values(), ids=DEVICES)
+def test_a_users_zero_vector_is_a_stowed_sail(device):
+    sailing = sailviz.load_scene(AHEAD | {"device": device})
+    run = simulate(sailing, steering=stowed_at_last)
+    off = run.time > 301 * DAY
+    assert not run.thrust.acceleration[off].any()
+    assert run.thrust.acceleration[run.time < 299 * DAY].any(axis=1).all()
+    assert not run.attitude.normal[off].any()
+    assert np.linalg.norm(run.attitude.quaternion, axis=1) == pytest.approx(1, abs=1e-12)
+    assert run.mass[off] == pytest.approx(run.mass[-1], rel=1e-15)
+    energy = np.sum(run.velocity**2, axis=1) / 2 - MU_SUN / np.linalg.norm(run.position, axis=1)
+    assert np.ptp(energy[off]) < 1e-9 * abs(energy[-1])
+
+
 @numba.cfunc(USER_SIGNATURE)
 def ahead_in_c(t, state, out):
     y, n = numba.carray(state, (7,)), numba.carray(out, (3,))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from datetime import datetime
+from datetime import datetime, timedelta
 from functools import cache
 
 import numpy as np
@@ -97,20 +97,19 @@ def plasma_table():
 
 
 @cache
-def air_table(levels, ap):
-    """ln of the density (kg/m3) at solar levels, from NRLMSIS 2.1: what depends on longitude and UT off, an equinox and
-    a solstice averaged, eight local times made 24 by their Fourier sum."""
+def air_table(levels, ap, day):
+    """ln of the density (kg/m3) at solar levels, from NRLMSIS 2.1, at noon of a day: what depends on longitude and UT
+    off, eight local times made 24 by their Fourier sum."""
     from pymsis import calculate
 
     off = {"all_ut_effects": 0, "longitudinal": 0, "mixed_ut_long": 0, "mixed_ap_ut_long": 0}
     latitude, height = np.linspace(-90, 90, 19), np.arange(100.0, 1500.1, 10)
     values = []
     for level in levels:
-        means = 0.0
-        for day in ("2019-03-21T12:00", "2019-06-21T12:00"):  # longitude -180 deg has midnight at noon UT
-            drivers = {"f107s": [level], "f107as": [level], "aps": [[ap] * 7], "version": 2.1} | off
-            means = means + calculate([day], np.arange(-180.0, 180, 45), latitude, height, **drivers)[0, ..., 0] / 2
-        log, angle = np.log(means.astype(float)), np.radians(np.arange(0, 360, 45))
+        drivers = {"f107s": [level], "f107as": [level], "aps": [[ap] * 7], "version": 2.1} | off
+        noon = [f"{day}T12:00"]  # longitude -180 deg has midnight at noon UT
+        seen = calculate(noon, np.arange(-180.0, 180, 45), latitude, height, **drivers)[0, ..., 0]
+        log, angle = np.log(seen.astype(float)), np.radians(np.arange(0, 360, 45))
         fine, total = np.radians(np.arange(0, 360, 15)), log.mean(axis=0)[None]
         for k in range(1, 5):
             weight = 1 / 8 if k == 4 else 1 / 4
@@ -127,7 +126,12 @@ def air_drag(scene):
     if air.kind == "nrlmsis-2.1":
         flux = scene.environment.solar_flux
         levels = (70.0, 100.0, 145.0, 200.0) if flux == "cycle" else (flux,)
-        table = air_table(levels, air.ap)
+        # a run of hours: the noons before and after it, its density between them on a straight line
+        begin = datetime(2000, 1, 1, 12) + timedelta(days=days_since_j2000(scene, 0.0))
+        before = (begin - timedelta(hours=12)).replace(hour=12, minute=0, second=0, microsecond=0)
+        assert begin + timedelta(seconds=scene.propagation.duration) <= before + timedelta(days=1)
+        noons = np.array([0.0, 86400.0]) + (before - begin).total_seconds()
+        tables = [air_table(levels, air.ap, (before + timedelta(days=i)).date()) for i in range(2)]
 
     def drag(t, r, v, mass):
         if air.kind == "exponential":
@@ -135,7 +139,9 @@ def air_drag(scene):
                 (air.reference_altitude - np.linalg.norm(r) + body(scene)[1]) / air.scale_height
             )
         else:
-            density = np.exp(np.interp(solar_flux(scene, t), levels, table(place(scene, t, r))))
+            where = place(scene, t, r)
+            log = [np.interp(solar_flux(scene, t), levels, table(where).ravel()) for table in tables]
+            density = np.exp(np.interp(t, noons, log))
         u = v - np.cross(spin_of_earth(scene), r)
         return -0.5 * density * craft.drag_coefficient * craft.drag_area / mass * np.linalg.norm(u) * u
 

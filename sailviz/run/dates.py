@@ -157,5 +157,3 @@ def numbers(values: object) -> np.ndarray:
         return np.array(found, dtype=float)
     except (TypeError, ValueError, OverflowError):
         raise DateError("is not an array of numbers") from None
-    except OverflowError:
-        raise DateError("holds a number beyond 1.8e308") from None

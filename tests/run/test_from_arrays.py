@@ -171,7 +171,7 @@ def test_every_fault_is_named_at_once_with_what_was_wanted():
         (lambda a: {"mass": np.full(50, 1 + 0j)}, "mass: holds complex numbers"),
         (lambda a: {"mass": True}, "mass: True is a truth value"),
         (lambda a: {"mass": "5"}, "mass: not an array of numbers"),
-        (lambda a: {"mass": 10**400}, "mass: holds a number beyond"),
+        (lambda a: {"mass": 10**400}, "mass: not an array of numbers"),
         (lambda a: {"events": [("late", 1e12)]}, "'late' at 1000000000000.0 s is outside the run"),
         (lambda a: {"environment": {"drag_N": [1.0]}}, r"environment\['drag_N'\]: shape \(1,\), wanted \(50,\)"),
         (lambda a: {"references": {"x": [1.0, 2.0]}}, r"references\['x'\]: shape \(2,\), wanted \(k, 3\)"),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -191,11 +190,12 @@ def _recording_of(source: str, settings: Sequence[str], quiet: bool) -> Iterator
 
     scene = load_scene(source, values_of(settings))
     from sailviz.recording import record
+    from sailviz.recording.views.scratch import scratch
     from sailviz.simulation import simulate_blocks
 
     say_if_compiling(quiet)
-    with tempfile.TemporaryDirectory(prefix="sailviz-") as folder:
-        path = Path(folder) / f"{Path(source).stem}.rrd"
+    with scratch() as folder:
+        path = folder / f"{Path(source).stem}.rrd"
         with progress_bar(scene.title, quiet) as progress:
             record(simulate_blocks(scene, progress=progress), path)
         yield path

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import io
-import tempfile
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from sailviz.errors import RecordingError
 from sailviz.recording.views.movie import palette_of, written_whole
+from sailviz.recording.views.scratch import scratch
 from sailviz.recording.views.screenshot import FRAME, Studio, check_vulkan
 from sailviz.shipped import shipped_scenes
 
@@ -76,8 +76,8 @@ def take(
         raise RecordingError(f"there is no shipped scene {unknown[0]}; `sailviz list` names them")
     files = file_names(names or scenes)
     for number, (name, file) in enumerate(files.items()):
-        with tempfile.TemporaryDirectory(prefix="sailviz-") as scratch:
-            path = Path(scratch) / "scene.rrd"
+        with scratch() as place:
+            path = place / "scene.rrd"
             record(simulate_blocks(load_scene(name)), path)
             photograph(path, Path(folder) / file, pose_of(name), size)
         if progress:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -16,6 +15,7 @@ import numpy as np
 from sailviz.errors import RecordingError
 from sailviz.recording.reader import FilePath
 from sailviz.recording.views.instant import Moment, fraction_of
+from sailviz.recording.views.scratch import scratch
 from sailviz.recording.views.screenshot import AGREE as FIRST_AGREE
 from sailviz.recording.views.screenshot import FRAME, Studio
 
@@ -69,11 +69,11 @@ def make_movie(
     errors: dict[str, None] = {}
     warnings: dict[str, None] = {}
     frames: list[Path] = []
-    with written_whole(out) as part, tempfile.TemporaryDirectory(prefix="sailviz-") as scratch:
+    with written_whole(out) as part, scratch() as folder:
         with Studio(path, size=size, panels=panels) as studio:
             for number, at in enumerate(np.linspace(first, last, count)):
                 agree = AGREE if number else FIRST_AGREE
-                report = studio.shoot(Path(scratch) / f"{number:05d}.png", view=view, at=float(at), agree=agree)
+                report = studio.shoot(folder / f"{number:05d}.png", view=view, at=float(at), agree=agree)
                 frames.append(report.path)
                 errors |= dict.fromkeys(report.errors)
                 warnings |= dict.fromkeys(report.warnings)

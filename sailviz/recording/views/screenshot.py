@@ -8,23 +8,26 @@ import contextlib
 import copy
 import io
 import os
-import subprocess
-import tempfile
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import numpy as np
 
 from sailviz.errors import RecordingError
 from sailviz.recording.reader import FilePath, read
 from sailviz.recording.sinks import reason, viewer_binary
+from sailviz.recording.views.children import Child
+from sailviz.recording.views.scratch import scratch
 from sailviz.recording.views.viewers import free_port
 
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient
 
+A = TypeVar("A")  # of an answer
 PACKAGES = "libvulkan1 mesa-vulkan-drivers"
 START, SETTLE = 60.0, 25.0  # s to wait for the viewer, and for a picture that no longer changes
 AGREE = 3  # frames in a row that must be the same
@@ -76,19 +79,37 @@ class Studio:
 
     def __enter__(self) -> Self:
         check_vulkan()
-        self._scratch = tempfile.TemporaryDirectory(prefix="sailviz-")
-        self._process, port = start_viewer(self._path, self._size, self._scratch.name)
-        try:
+        with contextlib.ExitStack() as begun:
+            folder = begun.enter_context(scratch())
+            self._process, port = start_viewer(self._path, self._size, folder)
+            begun.callback(self._process.end)
             self._client, state = self._wait_for_viewer(f"rerun+http://127.0.0.1:{port}/proxy")
-        except BaseException:
-            self._stop()
-            raise
-        recording = next(r for r in state.recordings if r.store_id == state.active_recording)
-        timelines = {timeline.name: timeline for timeline in recording.timelines}
-        self._timeline = timelines[recording.current_timeline]
-        self._blueprint = self._client.get_blueprint().blueprint
-        self._shown: tuple[str | None, str | None] | None = None
+            recording = next(r for r in state.recordings if r.store_id == state.active_recording)
+            timelines = {timeline.name: timeline for timeline in recording.timelines}
+            self._timeline = timelines[recording.current_timeline]
+            self._blueprint = self._asked("for its blueprint", self._client.get_blueprint).blueprint
+            self._shown: tuple[str | None, str | None] | None = None
+            self._begun = begun.pop_all()
         return self
+
+    def _asked(self, words: str, question: Callable[[], A]) -> A:
+        """The viewer's answer; asked again where it does not answer in time, for a machine may have much else to do.
+        RecordingError, in a sentence, where it never does."""
+        for patience in (1.0, 3.0, 0.0):
+            try:
+                return question()
+            except (OSError, RuntimeError) as error:  # TimeoutError is an OSError
+                if self._process.poll() is not None:
+                    raise RecordingError(
+                        f"the viewer ended by itself with code {self._process.returncode} when it was asked {words}"
+                    ) from None
+                if not patience:
+                    raise RecordingError(
+                        f"the viewer of {self._path.name} was asked {words} three times and did not answer "
+                        f"({_first_line(error)}); where much else is running, try again later"
+                    ) from None
+                time.sleep(patience)
+        raise AssertionError("the last try returns or raises")
 
     def _wait_for_viewer(self, url: str) -> tuple[ViewerClient, Any]:
         """The viewer, and its state once it shows the recording."""
@@ -117,7 +138,7 @@ class Studio:
         return {part.get("display_name", path): path.rsplit("/", 1)[-1] for path, part in parts.items()}
 
     def __exit__(self, *_: object) -> None:
-        self._stop()
+        self._begun.close()
 
     def shoot(
         self,
@@ -139,7 +160,8 @@ class Studio:
             Path(png).write_bytes(image)
         except OSError as error:
             raise RecordingError(f"cannot write the picture {png}: {reason(error)}") from None
-        reports = [(v.name, r) for v in self._client.get_state().views for r in v.reports]
+        state = self._asked("for its state", self._client.get_state)
+        reports = [(v.name, r) for v in state.views for r in v.reports]
         errors = tuple(f"{name}: {r.summary}" for name, r in reports if r.severity == "error")
         warnings = tuple(f"{name}: {r.summary}" for name, r in reports if r.severity != "error")
         width, height = (int.from_bytes(image[start : start + 4], "big") for start in (16, 20))
@@ -170,7 +192,7 @@ class Studio:
                 container = part.get("ContainerBlueprint", {})
                 if f"view/{front}" in container.get("contents", ()):
                     container["active_tab"] = f"view/{front}"
-            self._client.set_blueprint(changed, of="recording")
+            self._asked("to change its blueprint", lambda: self._client.set_blueprint(changed, of="recording"))
             self._shown = wanted
         return alone
 
@@ -189,13 +211,13 @@ class Studio:
             place = {"duration": np.timedelta64(value, "ns")}
         elif timeline.time_type == "timestamp":
             place = {"timestamp": np.datetime64(value, "ns")}
-        self._client.set_time(timeline.name, play_state="paused", **place)
+        self._asked("for a moment", lambda: self._client.set_time(timeline.name, play_state="paused", **place))
 
     def _settled(self, view_id: str | None, agree: int) -> bytes:
         """A screenshot once it no longer changes: chunks are loaded lazily."""
         last, same, started = b"", 1, time.monotonic()
         while time.monotonic() - started < SETTLE:
-            image = self._client.take_screenshot(view_id) if view_id else self._client.take_screenshot()
+            image = self._asked("for a picture", partial(self._client.take_screenshot, *([view_id] if view_id else [])))
             same = same + 1 if image == last else 1
             last = image
             if same >= agree:
@@ -203,25 +225,19 @@ class Studio:
             time.sleep(0.1)
         return last
 
-    def _stop(self) -> None:
-        self._process.terminate()
-        try:
-            self._process.wait(5)
-        except subprocess.TimeoutExpired:
-            self._process.kill()
-            self._process.wait()
-        self._scratch.cleanup()
+
+def _first_line(error: Exception) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0]
 
 
-def start_viewer(path: Path, size: tuple[int, int], scratch: str) -> tuple[subprocess.Popen[bytes], int]:
+def start_viewer(path: Path, size: tuple[int, int], folder: Path) -> tuple[Child, int]:
     """Start Rerun's own binary headless -> process, port."""
     port = free_port()
     environment = dict(os.environ, RUST_LOG="error", RERUN_ANALYTICS="0")
-    environment.setdefault("XDG_RUNTIME_DIR", scratch)
+    environment.setdefault("XDG_RUNTIME_DIR", str(folder))
     command = [viewer_binary(), "--headless", "--bind", "127.0.0.1", "--port", str(port)]
     command += ["--window-size", f"{size[0]}x{size[1]}", "--hide-welcome-screen", "--memory-limit", "4GiB", str(path)]
-    process = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    return process, port
+    return Child(command, environment), port
 
 
 def without_bar(image: bytes) -> bytes:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import socket
-import subprocess
 import sys
 import time
 import urllib.error
@@ -19,6 +18,7 @@ from urllib.parse import quote
 from sailviz.errors import RecordingError
 from sailviz.recording.reader import FilePath, read
 from sailviz.recording.sinks import viewer_binary
+from sailviz.recording.views.children import Child
 
 START = 30.0  # s to wait for the server
 BUFFER = 1 << 30  # bytes that the server holds at least; what does not fit is dropped, oldest first
@@ -51,13 +51,7 @@ class WebServer:
         size = sum(path.stat().st_size for path in self._paths)
         command = [viewer_binary(), "--serve-web", "--bind", self._host, "--port", str(self._data_port)]
         command += ["--web-viewer-port", str(self._port), "--server-memory-limit", f"{BUFFER + 4 * size}B"]
-        self._process = subprocess.Popen(
-            [*command, *map(str, self._paths)],
-            env=viewer_environment(),
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
+        self._process = Child([*command, *map(str, self._paths)], viewer_environment())
         try:
             self._wait_for_page()
         except BaseException:
@@ -66,7 +60,7 @@ class WebServer:
         return self
 
     def __exit__(self, *_: object) -> None:
-        end(self._process)
+        self._process.end()
 
     def wait(self) -> None:
         """Wait until the server ends by itself, which it should not: RecordingError."""
@@ -108,13 +102,13 @@ def open_viewer(*paths: FilePath) -> None:
         raise RecordingError(
             "there is no screen for the viewer: `sailviz web` shows recordings in a browser, `sailviz picture` as PNG"
         )
-    process = subprocess.Popen(
-        [viewer_binary(), *(str(Path(path).resolve()) for path in paths)], env=viewer_environment()
+    process = Child(
+        [viewer_binary(), *(str(Path(path).resolve()) for path in paths)], viewer_environment(), quiet=False
     )
     try:
         code = process.wait()
     finally:
-        end(process)
+        process.end()
     if code:
         raise RecordingError(f"the viewer ended with code {code}")
 
@@ -139,17 +133,6 @@ def check_free(host: str, port: int) -> None:
             probe.bind((host, port))
         except OSError as error:
             raise RecordingError(f"cannot listen on {host}:{port}: {(error.strerror or str(error)).lower()}") from None
-
-
-def end(process: subprocess.Popen[bytes]) -> None:
-    """End a process of ours, politely first."""
-    if process.poll() is None:
-        process.terminate()
-        try:
-            process.wait(5)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            process.wait()
 
 
 @contextmanager

@@ -22,13 +22,19 @@ from sailviz.recording import record
 from sailviz.recording.drawing.style import TARGET
 from sailviz.recording.sinks import viewer_binary
 from sailviz.recording.views.screenshot import has_vulkan
-from sailviz.recording.views.viewers import WebServer, end, free_port, open_viewer
+from sailviz.recording.views.viewers import WebServer, free_port, open_viewer
 
 BROWSER, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 PATIENCE = 75.0  # s for a browser without a graphics card
 FLAGS = """headless=new no-sandbox use-gl=angle use-angle=swiftshader enable-unsafe-swiftshader ignore-gpu-blocklist
     disable-background-networking disable-component-update disable-sync no-first-run window-size=960,540"""
 OFFLINE = "MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"
+
+
+def end(process):
+    """Leave nothing behind, whatever became of the test."""
+    process.kill()
+    process.wait()
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import json
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,10 +28,11 @@ from sailviz.errors import RecordingError, SailvizError, SceneError
 
 if TYPE_CHECKING:
     from sailviz.sweeps import Sweep
+    from sailviz.sweeps.censoring import Number
     from sailviz.sweeps.definition import Definition
 
 
-ENDINGS = (".parquet", "")
+ENDINGS = (".parquet", ".csv", "")
 
 
 @click.command()
@@ -54,7 +55,9 @@ ENDINGS = (".parquet", "")
     help="Flights to record: 0,5, min:COLUMN, max:COLUMN, median:COLUMN, failed.",
 )
 @set_option
-@click.option("-o", "--output", metavar="FILE", help="Table to write; NAME-sweep.parquet in this folder by default.")
+@click.option(
+    "-o", "--output", metavar="FILE", help="Table, .parquet or .csv; NAME-sweep.parquet in this folder by default."
+)
 @click.option(
     "--engine",
     default="processes",
@@ -154,38 +157,33 @@ def _progress(title: str, flights: int, quiet: bool) -> Iterator[Callable[[int, 
 
 
 def _say_interrupted(path: Path) -> None:
+    from sailviz.sweeps.loop import parquet_of
+
     rows = 0
-    if path.exists():
+    if parquet_of(path).exists():
         import pyarrow.parquet as pq
 
-        rows = pq.read_metadata(path).num_rows
+        rows = pq.read_metadata(parquet_of(path)).num_rows
     where = f"{path} holds the {rows:,} flights that are done" if rows else "no flight was done yet"
     click.echo(f"Interrupted: {where}. The same command goes on from there.", err=True)
 
 
-def _statistics(found: Sweep, names: Sequence[str]) -> dict[str, dict[str, float]]:
-    """Of every measured column: how many flights have it, mean, standard deviation, least, median, largest."""
-    import numpy as np
+def _statistics(found: Sweep, definition: Definition) -> dict[str, dict[str, Number | int]]:
+    """Of every measured column: how many flights have it, how many are still on their way, and its statistics."""
+    from sailviz.sweeps.censoring import AT_LEAST, bounded, statistics
 
-    table = found.to_arrow(list(names))
-    statistics = {}
-    for name in names:
+    asked = definition.asked
+    bounds = bounded(asked)
+    table = found.to_arrow([*asked, *(name + AT_LEAST for name in bounds)])
+    told: dict[str, dict[str, Number | int]] = {}
+    for name in asked:
         values = table[name].to_numpy()
-        values = values[np.isfinite(values)]
-        if len(values):
-            statistics[name] = {
-                "flights": len(values),
-                "mean": float(values.mean()),
-                "deviation": float(values.std(ddof=1)) if len(values) > 1 else 0.0,
-                "min": float(values.min()),
-                "median": float(np.median(values)),
-                "max": float(values.max()),
-            }
-    return statistics
-
-
-def _measured(definition: Definition) -> list[str]:
-    return list(dict.fromkeys([*definition.expected, *definition.report]))
+        least = table[name + AT_LEAST].to_numpy() if name in bounds else values[:0]
+        numbers = statistics(values, least)
+        if numbers:
+            known, on_their_way = (int((column == column).sum()) for column in (values, least))
+            told[name] = {"flights": known, "running": on_their_way, **numbers}
+    return told
 
 
 def _facts(found: Sweep, definition: Definition) -> dict[str, Any]:
@@ -193,20 +191,32 @@ def _facts(found: Sweep, definition: Definition) -> dict[str, Any]:
         "table": str(found.path),
         "flights": found.flights,
         "failed": found.failed,
+        "running": found.running,
         "missed": found.missed,
         "resumed": found.resumed,
         "recordings": {str(number): str(path) for number, path in found.recordings.items()},
-        "statistics": _statistics(found, _measured(definition)),
+        "statistics": {name: _plain(numbers) for name, numbers in _statistics(found, definition).items()},
     }
+
+
+def _plain(numbers: dict[str, Number | int]) -> dict[str, Any]:
+    """A column's statistics for JSON; `at_least` names those that are bounds."""
+    told: dict[str, Any] = {
+        word: number if isinstance(number, int) else number.value for word, number in numbers.items()
+    }
+    return told | {"at_least": [word for word, number in numbers.items() if isinstance(number, tuple) and number[1]]}
 
 
 def _tell(found: Sweep, definition: Definition) -> None:
     before = f", {found.resumed:,} of them done before" if found.resumed else ""
     click.echo(f"{definition.scene().title}: {found.flights:,} flights{before}")
-    shown = ("mean", "deviation", "min", "median", "max")
-    rows: list[tuple[str, ...]] = [("quantity", "flights", *shown)]
-    for name, numbers in _statistics(found, _measured(definition)).items():
-        rows.append((name, f"{numbers['flights']:,}", *(f"{numbers[word]:.7g}" for word in shown)))
+    shown = {"mean": "mean", "deviation": "deviation", "min": "min", "p5": "5 %", "median": "median", "p95": "95 %",
+             "max": "max"}  # fmt: skip
+    rows: list[tuple[str, ...]] = [("quantity", "flights", "running", *shown.values())]
+    for name, numbers in _statistics(found, definition).items():
+        rows.append((name, *(_cell(numbers.get(word)) for word in ("flights", "running", *shown))))
+    if not found.running:
+        rows = [(*row[:2], *row[3:]) for row in rows]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows if len(rows) > 1 else ():
         cells = [
@@ -214,6 +224,8 @@ def _tell(found: Sweep, definition: Definition) -> None:
             for i, (cell, width) in enumerate(zip(row, widths, strict=True))
         ]
         click.echo("  ".join(cells))
+    if found.running:
+        click.echo(f"{found.running:,} had not come where they were awaited when their time was over")
     if found.missed:
         click.echo(f"{found.missed:,} missed an expectation of the scene")
     if found.failed:
@@ -223,6 +235,14 @@ def _tell(found: Sweep, definition: Definition) -> None:
     click.echo(f"Wrote {found.path}")
     for number, path in found.recordings.items():
         click.echo(f"Recorded flight {number}: {path}")
+
+
+def _cell(number: Number | int | None) -> str:
+    if number is None:
+        return "-"
+    if isinstance(number, int):
+        return f"{number:,}"
+    return ("at least " if number.at_least else "") + f"{number.value:.7g}"
 
 
 def _reasons(found: Sweep, most: int = 5) -> list[tuple[str, int]]:

@@ -11,6 +11,7 @@ import json
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import prod
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from sailviz.scene.faults import locate
 from sailviz.scene.loading import Scene, SceneSource, build_scene, load_scene
 from sailviz.scene.sections import Expectation
 from sailviz.sweeps.conflicts import disagreements, value_faults
-from sailviz.sweeps.distributions import Axis, Draw, flight_seed, varied
+from sailviz.sweeps.distributions import Axis, Draw, flight_seed, too_many, varied
 from sailviz.sweeps.report import column, numbered, report_faults, reported
 
 
@@ -88,7 +89,7 @@ class Definition:
         """Everything that decides what the flights are, ready for JSON."""
         facts = {
             "scene": self.source,
-            "values": _flat(self.raw),
+            "values": {key: value for key, value in _flat(self.raw).items() if not key.startswith("limits.")},
             "vary": {item.key: item.words() for item in self.items},
             "together": self.together,
             "draws": self.draws,
@@ -106,6 +107,13 @@ class Definition:
     def scene(self) -> Scene:
         """The scene that the flights vary."""
         return build_scene(self.raw, {}, self.text, self.source)
+
+    @cached_property
+    def asked(self) -> dict[str, Expectation]:
+        """Column -> what it holds, of all that is measured."""
+        return dict(zip(self.expected, self.scene().expect, strict=True)) | dict(
+            zip(self.report, self.reported(), strict=True)
+        )
 
     def reported(self) -> list[Expectation]:
         """What `report` asks for, in the form in which a scene asks for it."""
@@ -128,10 +136,13 @@ def define(
     """
     asked = _with_file(_Asked(scene, dict(values or {}), draws, seed, tuple(report), together))
     made = _scene_of(asked)
-    items, place, faults = _with_arguments(asked, vary or {})
+    most = made.limits.flights
+    items, place, faults = _with_arguments(asked, vary or {}, most)
     report = tuple(dict.fromkeys(asked.report))
     faults += disagreements(items, asked.draws, asked.seed, bool(asked.together), place, bool(faults))
     faults += report_faults(made, report)
+    if not faults:
+        faults += _too_many_flights(items, asked, most)
     known = {fault.where for fault in faults}
     faults += [fault for fault in (value_faults(made, items, place) if items else ()) if fault.where not in known]
     if faults:
@@ -150,6 +161,15 @@ def define(
         version=sailviz.__version__,
     )
     return definition, list(asked.record)
+
+
+def _too_many_flights(items: Sequence[Axis | Draw], asked: _Asked, most: int) -> list[Fault]:
+    """A fault where a grid and its draws are more flights than the limit."""
+    lengths = [len(item.values) for item in items if isinstance(item, Axis)]
+    flights = (max(lengths, default=1) if asked.together else prod(lengths)) * int(asked.draws or 1)
+    if flights <= most:
+        return []
+    return [Fault("draws" if asked.draws and asked.draws > most else "vary", too_many(flights, "flights", most))]
 
 
 @dataclass(frozen=True)
@@ -207,13 +227,15 @@ def _scene_of(asked: _Asked) -> Scene:
         raise SceneError(faults, asked.source) from None
 
 
-def _with_arguments(asked: _Asked, vary: Mapping[str, Any]) -> tuple[list[Axis | Draw], dict[str, str], list[Fault]]:
+def _with_arguments(
+    asked: _Asked, vary: Mapping[str, Any], most: int
+) -> tuple[list[Axis | Draw], dict[str, str], list[Fault]]:
     """(what varies, key -> where that is written, faults), the keys of `vary` over those of the file."""
     faults = list(asked.faults)
     new: dict[str, Axis | Draw] = {}
     for key, wanted in vary.items():
         try:
-            new[key] = varied(key, wanted)
+            new[key] = varied(key, wanted, most)
         except ValueError as error:
             faults.append(Fault(key, str(error)))
     place = {item.key: where for item, where in asked.items} | {key: key for key in new}

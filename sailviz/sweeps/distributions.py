@@ -19,7 +19,8 @@ import numpy as np
 
 from sailviz.words import nearest
 
-MOST_VALUES = 10_000_000
+MOST_VALUES = 10_000_000  # unless limits.flights of the scene says otherwise
+BYTES_PER_FLIGHT = 100  # of a table, about; more with many columns
 
 
 @dataclass(frozen=True)
@@ -102,10 +103,13 @@ def flight_seed(seed: int, cell: int, draw: int) -> int:
     return int(np.random.SeedSequence([seed, cell, draw]).generate_state(1)[0])
 
 
-def axis(key: str, low: float, high: float, count: float, spacing: str = "linear") -> Axis:
-    """Values from low to high, both included; whole numbers where all of them are. ValueError says what is wrong."""
-    if isinstance(count, bool) or count != int(count) or not 1 <= count <= MOST_VALUES:
-        raise ValueError(f"a range has a whole number of values, 1 or more, not {count:g}.")
+def axis(key: str, low: float, high: float, count: float, spacing: str = "linear", most: int = MOST_VALUES) -> Axis:
+    """Values from low to high, both included; whole numbers where all of them are. most : values that are allowed.
+    ValueError says what is wrong."""
+    if isinstance(count, bool) or not 1 <= count < np.inf or count != int(count):
+        raise ValueError(f"a range has a whole number of values, 1 or more, not {count!r}.")
+    if count > most:
+        raise ValueError(too_many(count, "values", most))
     if not np.isfinite([low, high]).all():
         raise ValueError("a range goes from one finite number to another.")
     if spacing == "log":
@@ -117,6 +121,15 @@ def axis(key: str, low: float, high: float, count: float, spacing: str = "linear
     values = values.tolist()
     whole = isinstance(low, int) and isinstance(high, int) and all(value == int(value) for value in values)
     return Axis(key, tuple(int(value) for value in values) if whole else tuple(values))
+
+
+def too_many(asked: float, what: str, most: int) -> str:
+    """That a sweep asks for more than its limit, with what the table would weigh."""
+    size = asked * BYTES_PER_FLIGHT / 1e9
+    return (
+        f"asks for {asked:,.0f} {what} (a table of some {size:,.3g} GB), more than the {most:,} that limits.flights of "
+        "the scene allows."
+    )
 
 
 def drawn(key: str, text: str) -> Draw:
@@ -140,10 +153,11 @@ def drawn(key: str, text: str) -> Draw:
     return Draw(key, found[1], parameters)
 
 
-def varied(key: str, wanted: Any) -> Axis | Draw:
-    """What a key takes, from text as above or from values. ValueError says what is wrong."""
+def varied(key: str, wanted: Any, most: int = MOST_VALUES) -> Axis | Draw:
+    """What a key takes, from text as above or from values. most : values that are allowed. ValueError says what is
+    wrong."""
     if isinstance(wanted, str):
-        return _from_text(key, wanted)
+        return _from_text(key, wanted, most)
     if isinstance(wanted, np.ndarray):
         wanted = wanted.tolist()
     values = wanted if isinstance(wanted, (list, tuple, range)) else [wanted]
@@ -153,7 +167,7 @@ def varied(key: str, wanted: Any) -> Axis | Draw:
     return Axis(key, values)
 
 
-def _from_text(key: str, text: str) -> Axis | Draw:
+def _from_text(key: str, text: str, most: int) -> Axis | Draw:
     if text.strip() == "seed" or re.fullmatch(r"\s*[A-Za-z]\w*\s*\(.*\)\s*", text):
         return drawn(key, text)
     ends = text.split(":")
@@ -162,7 +176,7 @@ def _from_text(key: str, text: str) -> Axis | Draw:
         if len(numbers) < 3 or len(ends) > 4 or spacing not in ("linear", "log"):
             raise ValueError(f'"{text}": a range is LOW:HIGH:COUNT or LOW:HIGH:COUNT:log.')
         low, high, count = numbers
-        return axis(key, low, high, count, spacing)
+        return axis(key, low, high, count, spacing, most)
     if not text.strip():
         raise ValueError("has no values.")
     try:

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Any
 import sailviz
 from sailviz.errors import PropagationError, SailvizError, SceneError
 from sailviz.scene.loading import Scene
+from sailviz.sweeps.censoring import AT_LEAST, bounded, still_running
 from sailviz.sweeps.definition import Definition
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-OK, FAILED = "ok", "failed"
+OK, RUNNING, FAILED = "ok", "running", "failed"
 DIED = "the worker process died, for lack of memory perhaps"
 _scenes: dict[str, Scene] = {}  # of the definition that this process flies
 
@@ -35,6 +36,7 @@ def schema_of(definition: Definition) -> pa.Schema:
     for name in definition.expected:
         columns += [(name, pa.float64()), (f"{name} passed", pa.bool_())]
     columns += [(name, pa.float64()) for name in definition.report if name not in definition.expected]
+    columns += [(name + AT_LEAST, pa.float64()) for name in bounded(definition.asked)]
     return pa.schema([*columns, ("wall_s", pa.float64())])
 
 
@@ -80,7 +82,6 @@ def _row(definition: Definition, scene: Scene, flight: int) -> dict[str, Any]:
     flown: list[float] = []
     try:
         row |= _measured(definition, scene.with_values(definition.values(flight)), flown)
-        row["status"] = OK
     except SceneError as error:
         row["reason"] = "; ".join(map(str, error.faults))
     except PropagationError as error:
@@ -107,7 +108,11 @@ def _measured(definition: Definition, scene: Scene, flown: list[float]) -> dict[
     found = {name: _number(verdict.measured) for name, verdict in zip(definition.report, verdicts[count:], strict=True)}
     for name, verdict in zip(definition.expected, verdicts[:count], strict=False):
         found |= {name: _number(verdict.measured), f"{name} passed": verdict.passed}
-    return found | {"ended": ended}
+    items = zip([*scene.expect, *reported], (verdict.measured for verdict in verdicts), strict=True)
+    running = still_running(items, any(event.stop for event in scene.event), ended)
+    for name, unit in bounded(definition.asked).items() if running else ():
+        found[name + AT_LEAST] = None if found[name] is not None else flown[-1] / unit
+    return found | {"ended": ended, "status": RUNNING if running else OK}
 
 
 def _number(value: float) -> float | None:

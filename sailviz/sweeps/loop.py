@@ -14,6 +14,8 @@ from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any
 
+from sailviz.errors import OutputError
+from sailviz.files import writing
 from sailviz.scene.loading import SceneSource
 from sailviz.sweeps import engines
 from sailviz.sweeps.dealing import Dealer
@@ -46,9 +48,9 @@ def sweep(
     per point of the grid, where a key has a distribution. seed : of the draws, 0 by default. report : quantities
     beside the scene's own [[expect]], "radius_au@end". values : put over the scene's. executor : any
     concurrent.futures.Executor; without it engine ("processes", "threads", "serial", "dask", "dask://host:port") and
-    workers. path : table to write (parquet); an unfinished sweep of the same definition goes on from there. record :
-    flights to record beside the table, by number or "min:COLUMN", "max:COLUMN", "median:COLUMN", "failed". progress :
-    called with flights done and asked for.
+    workers. path : table to write, parquet by its ending, or CSV beside such a one; an unfinished sweep of the same
+    definition goes on from there. record : flights to record beside the table, by number or "min:COLUMN", "max:COLUMN",
+    "median:COLUMN", "failed". progress : called with flights done and asked for.
 
     A script that sweeps over processes needs `if __name__ == "__main__":` round it. Raises SceneError with every fault
     of the definition, SweepError if path holds something else or cannot be written, or the executor breaks down.
@@ -71,7 +73,7 @@ def fly_all(
     picks = check_picks(definition, record)
     if picks and path is None:
         raise SweepError("recordings are written beside the table: give it a path")
-    store = MemoryStore(definition) if path is None else FileStore(definition, Path(path))
+    store = MemoryStore(definition) if path is None else FileStore(definition, parquet_of(path))
     resumed = int(store.done.sum())
     if progress:
         progress(resumed, definition.flights)
@@ -83,8 +85,29 @@ def fly_all(
                 with engines.engine(engine, workers) as made:
                     Dealer(definition, store, made, progress, workers).deal()
         except BaseException:
-            store.close()  # what is done stays, as a table
+            _finish(store, path)  # what is done stays, as a table
             raise
-    store.close()
+    _finish(store, path)
     recordings = record_picked(definition, picks, store) if isinstance(store, FileStore) and picks else {}
-    return Sweep(definition.flights, *counts(store), resumed, store.path, recordings, store)
+    written = None if path is None else Path(path)
+    return Sweep(definition.flights, *counts(store), resumed, written, recordings, store)
+
+
+def parquet_of(path: str | Path) -> Path:
+    """Where the rows of a table lie: in itself, beside it if it is a CSV, which can hold no definition."""
+    found = Path(path)
+    return found.with_suffix(".parquet") if found.suffix.lower() == ".csv" else found
+
+
+def _finish(store: MemoryStore, path: str | Path | None) -> None:
+    """Put the table into order, and write it as a CSV too if that was asked for."""
+    store.close()
+    if path is None or store.path is None or Path(path) == store.path or not store.path.exists():
+        return
+    import pyarrow.csv
+
+    try:
+        with writing(path, "table") as part:
+            pyarrow.csv.write_csv(store.columns(), part)
+    except OutputError as error:
+        raise SweepError(str(error)) from None

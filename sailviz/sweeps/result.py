@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sailviz.sweeps.flight import RUNNING
 from sailviz.sweeps.store import MemoryStore
 
 if TYPE_CHECKING:
@@ -25,6 +26,11 @@ class Sweep:
     path: Path | None  # of the table, None if it was kept in memory
     recordings: dict[int, Path]  # by the number of the flight
     _store: MemoryStore = field(repr=False)
+
+    @property
+    def running(self) -> int:
+        """Flights that had not come where they were awaited when their time was over; no failures."""
+        return self._store.columns(["status"])["status"].to_pylist().count(RUNNING)
 
     @property
     def complete(self) -> bool:

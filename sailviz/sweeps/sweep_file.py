@@ -18,7 +18,7 @@ from sailviz.scene.named_files import outside
 from sailviz.scene.units_in_keys import convert
 from sailviz.scene.values import Section, one_of
 from sailviz.shipped import shipped_scenes, shipped_sweeps
-from sailviz.sweeps.distributions import Axis, Draw, axis, drawn, varied
+from sailviz.sweeps.distributions import MOST_VALUES, Axis, Draw, axis, drawn, varied
 from sailviz.words import nearest
 
 
@@ -52,11 +52,11 @@ class VarySection(Section):
         """Which of the three ways to vary a key is used."""
         return next(name for name in ("range", "distribution", "values") if getattr(self, name) is not None)
 
-    def item(self) -> Axis | Draw:
-        """The key with what it takes. ValueError says what is wrong."""
+    def item(self, most: int) -> Axis | Draw:
+        """The key with what it takes. most : values that are allowed. ValueError says what is wrong."""
         if self.range is not None:
             low, high, count = self.range
-            return axis(self.key, low, high, count, self.spacing)
+            return axis(self.key, low, high, count, self.spacing, most)
         if self.distribution is not None:
             return drawn(self.key, self.distribution)
         return varied(self.key, self.values)
@@ -80,6 +80,13 @@ class SweepRead:
     items: list[tuple[Axis | Draw, str]]
     faults: list[Fault]
     text: str
+
+
+def _most_flights(settings: dict[str, Any]) -> int:
+    """limits.flights of [set], as a table or with a dot in its key; a wrong one is told with the scene's faults."""
+    limits = settings.get("limits")
+    most = limits.get("flights") if isinstance(limits, dict) else settings.get("limits.flights")
+    return most if isinstance(most, int) else MOST_VALUES
 
 
 def find_sweep_file(name: str | os.PathLike[str]) -> Path | None:
@@ -119,10 +126,11 @@ def read_sweep_file(path: Path, source: str) -> SweepRead:
         raise SceneError(locate(faults + faults_of(error, converted, SweepFile), text), source) from None
     if (name := file.sweep.scene) not in shipped_scenes() and (what := outside(path.parent, name)):
         raise SceneError(locate([*faults, Fault("sweep.scene", f"{what}.")], text), source)
+    most = _most_flights(file.set)
     items = []
     for i, section in enumerate(file.vary):
         try:
-            items.append((section.item(), f"vary[{i}].key"))
+            items.append((section.item(most), f"vary[{i}].key"))
         except ValueError as error:
             faults.append(Fault(f"vary[{i}].{section.given}", str(error)))
     return SweepRead(file.sweep, file.set, items, faults, text)

@@ -234,6 +234,7 @@ def start_viewer(path: Path, size: tuple[int, int], folder: Path) -> tuple[Child
     """Start Rerun's own binary headless -> process, port."""
     port = free_port()
     environment = dict(os.environ, RUST_LOG="error", RERUN_ANALYTICS="0")
+    environment["TMPDIR"] = str(folder)  # what the viewer spills is swept away with the rest
     environment.setdefault("XDG_RUNTIME_DIR", str(folder))
     command = [viewer_binary(), "--headless", "--bind", "127.0.0.1", "--port", str(port)]
     command += ["--window-size", f"{size[0]}x{size[1]}", "--hide-welcome-screen", "--memory-limit", "4GiB", str(path)]

@@ -59,6 +59,19 @@ def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements[np
     return Elements(a, e, inclination, np.mod(raan, 2 * np.pi), np.mod(argument, 2 * np.pi), anomaly)
 
 
+def periapsis(orbit: Elements[np.ndarray]) -> np.ndarray:
+    """Distance (n,) m of the nearest point from the centre; NaN on a parabola, which has no axis."""
+    a = np.where(np.isfinite(orbit.semi_major_axis), orbit.semi_major_axis, np.nan)
+    found: np.ndarray = a * (1 - orbit.eccentricity)
+    return found
+
+
+def apoapsis(orbit: Elements[np.ndarray]) -> np.ndarray:
+    """Distance (n,) m of the farthest point from the centre; NaN on an open orbit, which has none."""
+    a = np.where(np.isfinite(orbit.semi_major_axis), orbit.semi_major_axis, np.nan)
+    return np.where(orbit.eccentricity < 1, a * (1 + orbit.eccentricity), np.nan)
+
+
 def state(
     semi_major_axis: ArrayLike,
     eccentricity: ArrayLike,
@@ -91,14 +104,17 @@ def mean_semi_major_axis(position: ArrayLike, velocity: ArrayLike, mu: float, ob
     """Semi-major axis (...,) m without the swing that an oblate body forces on it within a revolution.
 
     position m, velocity m/s : (..., 3), mu m3/s2, oblateness = J2 R^2 in m2. First order in J2, some ten metres in low
-    Earth orbit; it is the mean over time of the osculating one. Source: the energy integral in the J2 field; its mean
+    Earth orbit; it is the mean over time of the osculating one. NaN where there is no revolution, from escape speed on.
+    Source: the energy integral in the J2 field; its mean
     as in D. Brouwer, Astron. J. 64, 378 (1959).
     """
     r_vec, v_vec = np.asarray(position, float), np.asarray(velocity, float)
     r = np.linalg.norm(r_vec, axis=-1)
     h = np.cross(r_vec, v_vec)
     h2 = np.sum(h * h, axis=-1)
-    a = 1.0 / (2.0 / r - np.sum(v_vec * v_vec, axis=-1) / mu)
+    energy = 2.0 / r - np.sum(v_vec * v_vec, axis=-1) / mu
+    a = 1.0 / np.where(energy > 0, energy, np.nan)
+    h2 = np.where(h2 > 0, h2, np.nan)
     sin2_i = 1.0 - h[..., 2] ** 2 / h2
     now = (a / r) ** 3 * (1.0 - 3.0 * (r_vec[..., 2] / r) ** 2)
     mean = (1.0 - 1.5 * sin2_i) * (mu * a / h2) ** 1.5

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sailviz.constants import AU, MU_EARTH, MU_SUN
-from sailviz.elements import elements, state
+from sailviz.elements import apoapsis, elements, mean_semi_major_axis, periapsis, state
 
 ANGLE = st.floats(0, 2 * np.pi)
 SMALL = st.sampled_from([0.0, 1e-14, 1e-12, 1e-10, 1e-6, 1e-3])
@@ -116,3 +116,18 @@ def test_vis_viva_and_areal_velocity():
     h = np.linalg.norm(np.cross(position, velocity), axis=1)
     assert h == pytest.approx(np.full(50, np.sqrt(2.0 * 1.3 * (1 - 0.16))), rel=1e-13)
     assert np.cross(position, velocity)[:, 2] / h == pytest.approx(np.full(50, np.cos(0.5)), abs=1e-13)
+
+
+def test_an_open_orbit_has_a_periapsis_and_neither_apoapsis_nor_mean_and_warns_of_nothing():
+    """At 7,000 km the escape speed is 10.67 km/s: an ellipse, a hyperbola, and a fall along a line."""
+    mu = 3.986004418e14
+    position = np.full((3, 3), 1.0) * [7e6, 0, 0]
+    velocity = np.array([[0, 9e3, 0], [0, 12e3, 0], [1e3, 0, 0]])
+    with np.errstate(all="raise"):
+        mean = mean_semi_major_axis(position, velocity, mu, 1.08e-3 * 6.378e6**2)
+        orbits = elements(position[:2], velocity[:2], mu)
+        far, near = apoapsis(orbits), periapsis(orbits)
+    assert np.isfinite(mean).tolist() == [True, False, False]
+    assert near == pytest.approx([7e6, 7e6], rel=1e-12)
+    assert far[0] == pytest.approx(7e6 * (1 + orbits.eccentricity[0]) / (1 - orbits.eccentricity[0]), rel=1e-12)
+    assert np.isnan(far[1])

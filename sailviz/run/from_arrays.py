@@ -70,7 +70,7 @@ def trajectory(
         and normal suggest. side m of a sail, tethers, tether_length m : for scale and labels
     events : (name, time s) pairs or Events. references : name -> (k, 3) m, or References
     environment : name with unit -> (n,) numbers or truth values, or (n, 3). planets : draw their orbits round the Sun,
-        and with an epoch where they are
+        and with an epoch where they are; round the Earth an epoch turns the globe
     Raises TrajectoryError (a ValueError) with every fault at once.
     """
     check = ArrayChecks()
@@ -209,10 +209,17 @@ def _derived(given: _Given, setting: Setting, bodies: dict[str, np.ndarray]) -> 
         attitude,
         Thrust(thrust, frames.to_frame(axes, thrust), size, size > 0),
         elements(given.position, given.velocity, given.body.mu),
-        given.environment,
+        _turning(given) | given.environment,
         bodies=bodies,
         events=given.events,
     )
+
+
+def _turning(given: _Given) -> dict[str, np.ndarray]:
+    """How far the Earth has turned, rad, where it is the centre and the date is known: its map turns with it."""
+    if given.body.name != "Earth" or given.epoch is None:
+        return {}
+    return {"earth_rotation_rad": ephemeris.greenwich_sidereal_time(given.epoch, given.time)}
 
 
 def _planet_orbits(position: np.ndarray, epoch: np.datetime64 | None) -> tuple[Reference, ...]:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from sailviz.elements import Elements
+from sailviz.elements import Elements, apoapsis, periapsis
 from sailviz.run.arrays import Run
 
 FULL_CIRCLE = 1e-6  # length of the mean of unit vectors below which angles go all round and have no mean
@@ -77,8 +77,10 @@ def _acted(name: str) -> Value:
 
 
 def _mean_altitude(run: Run) -> np.ndarray:
-    """Without the swing that an oblate planet gives it, where the run knows that; else of the semi-major axis."""
-    osculating: np.ndarray = run.elements.semi_major_axis - run.setting.body.radius
+    """Without the swing that an oblate planet gives it, where the run knows that; else of the semi-major axis. NaN on
+    an open orbit, which has no mean."""
+    axis = run.elements.semi_major_axis
+    osculating: np.ndarray = np.where((axis > 0) & np.isfinite(axis), axis, np.nan) - run.setting.body.radius
     return run.environment.get("mean_altitude_m", osculating)
 
 
@@ -107,16 +109,16 @@ VALUES: dict[str, Value] = {
     "inclination": lambda run: run.elements.inclination,
     "raan": lambda run: run.elements.raan,
     "true_anomaly": lambda run: run.elements.true_anomaly,
-    "periapsis": lambda run: run.elements.semi_major_axis * (1 - run.elements.eccentricity),
-    "apoapsis": lambda run: run.elements.semi_major_axis * (1 + run.elements.eccentricity),
+    "periapsis": lambda run: periapsis(run.elements),
+    "apoapsis": lambda run: apoapsis(run.elements),
     "pitch": lambda run: run.attitude.pitch,
     "cone": lambda run: run.attitude.cone,
     "clock": lambda run: run.attitude.clock,
     "thrust_acceleration": lambda run: run.thrust.magnitude,
     "closed_form_error": _closed_form_error,
-    "perigee_altitude": _above_surface(lambda e: e.semi_major_axis * (1 - e.eccentricity)),
+    "perigee_altitude": _above_surface(periapsis),
     "mean_altitude": _mean_altitude,
-    "apogee_altitude": _above_surface(lambda e: e.semi_major_axis * (1 + e.eccentricity)),
+    "apogee_altitude": _above_surface(apoapsis),
     "quasi_circular_altitude": _acted("quasi_circular_altitude_m"),
     "sunlit": _acted("sunlit"),  # its mean is the share of the time
     "force_law_valid": _acted("force_law_valid"),

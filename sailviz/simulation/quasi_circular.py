@@ -52,6 +52,7 @@ class QuasiCircular:
                 inclination=inclination,
                 mean_radius=around.j2,
                 corotation=around.corotation,
+                most_nodes=scene.limits.steps,
             )
         except ValueError as error:
             what = f"there is no quasi-circular descent: {error}."

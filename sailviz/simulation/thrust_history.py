@@ -181,12 +181,12 @@ def wind_law(wind: Drawn) -> laws.Law:
 
 
 @cache
-def _series(path: str, repair: bool) -> Series:
-    """A measured series from any file that the readers know; read once per process."""
+def _series(path: str, repair: bool, most_rows: int) -> Series:
+    """A measured series from any file that the readers know; read once per process. most_rows : with its gaps."""
     from sailviz.environment.solar_wind import series as wind_series
 
     text = Path(path).suffix.lower() in ("", ".dat", ".txt", ".lst", ".asc")
-    return (wind_series.read_omni if text else wind_series.read_series)(path, repair=repair)
+    return (wind_series.read_omni if text else wind_series.read_series)(path, repair=repair, most_rows=most_rows)
 
 
 def wind_file(scene: Scene, wind: ReplayedWind) -> Path:
@@ -197,7 +197,7 @@ def wind_file(scene: Scene, wind: ReplayedWind) -> Path:
 def measured_wind(scene: Scene, wind: ReplayedWind, place: str = "environment.solar_wind") -> Series:
     """The measured series of a wind of the scene. SceneError where it cannot be used."""
     try:
-        return _series(str(wind_file(scene, wind)), wind.repair)
+        return _series(str(wind_file(scene, wind)), wind.repair, scene.limits.draws)
     except (OSError, ValueError) as error:
         what = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
         raise SceneError([Fault(f"{place}.file", f"{what}.")], scene.source) from None

@@ -353,6 +353,21 @@ def test_arguments_of_other_number_types_are_taken():
     assert run.setting.look_for == ("one line",)
 
 
+def test_round_the_earth_an_epoch_turns_the_globe_once_a_sidereal_day(tmp_path):
+    """On 2000-01-01 at noon Greenwich stands 280.46 deg from the equinox (IAU)."""
+    turn = 86164.0905
+    time = np.linspace(0, turn, 25)
+    radius = (MU_EARTH * (turn / (2 * np.pi)) ** 2) ** (1 / 3)
+    position, velocity = state(radius, 0.0, 0.0, 0.0, 0.0, 2 * np.pi * time / turn, MU_EARTH)
+    run = trajectory(time, position, velocity, mu=MU_EARTH, epoch="2000-01-01T12:00:00")
+    angle = run.environment["earth_rotation_rad"]
+    assert np.degrees(angle[0]) == pytest.approx(280.46, abs=0.01)
+    assert np.degrees(np.unwrap(angle)[-1] - angle[0]) == pytest.approx(360, abs=1e-3)
+    record_trajectory(time, position, velocity, tmp_path / "a.rrd", mu=MU_EARTH, epoch="2000-01-01T12:00:00")
+    assert "/world/center/globe" in sailviz.read(tmp_path / "a.rrd").entities
+    assert "earth_rotation_rad" not in trajectory(time, position, velocity, mu=MU_EARTH).environment
+
+
 def test_the_devices_of_arrays_are_those_of_scenes_and_those_that_are_drawn():
     assert set(LABELS) == set(CRAFT)
     assert {word: record.label for kind, record in DEVICES.items() for word in words_of_kind(kind)} == LABELS

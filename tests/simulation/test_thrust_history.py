@@ -110,7 +110,7 @@ def test_replayed_wind_is_the_series_with_gaps_filled_between_their_neighbours(t
 
 @pytest.mark.parametrize(
     ("options", "days", "sentence"),
-    [({"wrong": True}, 10, "nPa"), ({}, 31, "does not begin again"), (None, 10, "No such file")],
+    [({"wrong": True}, 10, "nPa"), ({}, 31, "does not begin again"), (None, 10, "there is no file")],
 )
 def test_a_bad_series_is_refused_in_one_sentence(tmp_path, options, days, sentence):
     wind = {"kind": "replay", "file": "none.csv", "seed": 1}

@@ -16,6 +16,7 @@ Atmosphere = Callable[[np.ndarray], np.ndarray] | tuple[npt.ArrayLike, npt.Array
 
 BRAKE_FLOOR = 200e3  # m, the brake is off below: molecular ions, and drag is stronger anyway
 PANEL = 100e3  # m, longest stretch of altitude under one Gauss-Legendre rule
+MOST_NODES = 10_000_000  # of a quadrature
 RULES = {count: np.polynomial.legendre.leggauss(count) for count in (40, 6)}  # for a PANEL, and for a few km
 
 
@@ -87,6 +88,16 @@ class Craft:
         pieces = np.linspace(upper, lower, 1 + int(np.ceil((upper - lower) / spacing)))
         inside = [k for k in inside if lower < k < upper]
         return np.unique(np.concatenate([pieces, inside]))[::-1]
+
+    def check_nodes(self, lower: float, upper: float, most: int, spacing: float = PANEL, count: int = 40) -> None:
+        """ValueError, with their number, where a descent by `edges` and `stages` has more nodes than `most`."""
+        nodes = (upper - lower) / spacing * count
+        if nodes > most:
+            raise ValueError(
+                f"a descent over {(upper - lower) / 1e3:,.6g} km has {nodes:,.0f} nodes of quadrature (some "
+                f"{8 * nodes / 1e9:,.3g} GB at a time), more than the {most:,} that most_nodes "
+                "(limits.steps of a scene) allows"
+            )
 
     def stages(self, edges: np.ndarray, count: int = 40) -> np.ndarray:
         """Time in s that each stretch between falling altitudes takes, by `count` nodes of RULES."""

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from sailviz.constants import MU_EARTH, RADIUS_EARTH, YEAR
-from sailviz.design.decay.orbit import BRAKE_FLOOR, Atmosphere, Force, craft_of, setting
+from sailviz.design.decay.orbit import BRAKE_FLOOR, MOST_NODES, Atmosphere, Force, craft_of, setting
 from sailviz.design.decay.profiles import BAND, REFERENCE, ForceProfile
 
 REENTRY = 120e3  # m, where a re-entry begins
@@ -32,6 +32,7 @@ def decay_time(
     inclination: float | None = None,
     mean_radius: bool = False,
     corotation: bool = False,
+    most_nodes: int = MOST_NODES,
 ) -> np.ndarray:
     """Time in s to descend between two altitudes; scalars or arrays, broadcast.
 
@@ -41,7 +42,7 @@ def decay_time(
     -> kg/m3. brake_floor : m, below it the brake is off.
     inclination : rad, needed by the two corrections. mean_radius : look the force up at the J2 mean radius instead of
     the mean semi-major axis. corotation : plasma and air turn with the Earth (+9 % time at 51.6 deg, -2 % over the
-    poles). Quadrature: 40 Gauss-Legendre nodes on every smooth stretch.
+    poles). Quadrature: 40 Gauss-Legendre nodes on every smooth stretch, most_nodes of them at most: ValueError beyond.
     """
     given = setting(force_profile, drag_area, air, brake_floor, inclination, mean_radius, corotation)
     rows = np.broadcast_arrays(
@@ -51,6 +52,7 @@ def decay_time(
     for place in np.ndindex(time.shape):
         m, tether, upper, lower, area = (float(row[place]) for row in rows)
         craft = craft_of(given, m, tether, upper, lower, area)
+        craft.check_nodes(lower, upper, most_nodes)
         time[place] = craft.stages(craft.edges(lower, upper)).sum() if upper > lower else 0.0
     return time[()]
 
@@ -130,10 +132,12 @@ def descend(
     inclination: float | None = None,
     mean_radius: bool = False,
     corotation: bool = False,
+    most_nodes: int = MOST_NODES,
 ) -> Descent:
     """The whole descent of one craft; scalars as for `decay_time`, and its options."""
     given = setting(force_profile, drag_area, air, brake_floor, inclination, mean_radius, corotation)
     craft = craft_of(given, mass, length, start_altitude, end_altitude, drag_area)
+    craft.check_nodes(end_altitude, start_altitude, most_nodes, FINE, 6)
     edges = craft.edges(end_altitude, start_altitude, FINE)
     time = np.concatenate([[0.0], np.cumsum(craft.stages(edges, 6))])
     return Descent(time, edges, craft.brake(edges), craft.drag(edges))

@@ -14,6 +14,7 @@ from sailviz.constants import DAY
 from sailviz.units import UNITS
 
 FEWEST_VALUES = 48
+MOST_ROWS = 10_000_000  # with the gaps; a millennium of hours
 LONGEST_GAP = 5 * DAY  # s; the longest of OMNI2 1998-2018 is 73 h
 USUAL = {  # of a median at 1 au, SI; years and solar minima stay far inside, a wrong unit falls far outside
     "pressure": (2e-10, 2e-8, "Pa"),
@@ -110,9 +111,16 @@ def _repeated(seconds, pressure, repair):
     return again
 
 
-def _on_even_steps(seconds, columns):
+def _on_even_steps(seconds, columns, most_rows):
     """(usual step s, columns with NaN at the times that were left out). ValueError for irregular times."""
     step = float(np.median(np.diff(seconds)))
+    rows = (seconds[-1] - seconds[0]) / step + 1
+    if rows > most_rows:
+        raise ValueError(
+            f"{len(seconds):,} rows in steps of {step:g} s span {rows:,.0f} of them with their gaps (some "
+            f"{8 * len(columns) * rows / 1e9:,.3g} GB), more than the {most_rows:,} "
+            "that most_rows (limits.draws of a scene) allows"
+        )
     place = np.rint((seconds - seconds[0]) / step).astype(int)
     off = np.abs(seconds - seconds[0] - place * step) / step
     if off.max() > 0.01 or (np.diff(place) == 0).any():
@@ -125,13 +133,15 @@ def _on_even_steps(seconds, columns):
     return step, full
 
 
-def series(time, pressure, speed=None, density=None, *, longest_gap=LONGEST_GAP, repair=False) -> Series:
+def series(
+    time, pressure, speed=None, density=None, *, longest_gap=LONGEST_GAP, repair=False, most_rows=MOST_ROWS
+) -> Series:
     """A Series from columns (n,): time as datetime64 or s, pressure Pa, speed m/s, density 1/m3; NaN is missing.
 
     Times may leave rows out, stand in the wrong order or repeat themselves; gaps are filled linearly in time on the
     logarithm. repair : take values that are not positive and finite as missing, and the first of two different values
     of one time. ValueError for those without it, for a gap above longest_gap (s), a wrong unit (by the median),
-    irregular times and fewer than 48 values.
+    irregular times, fewer than 48 values and, gaps included, more than most_rows.
     """
     columns = {"pressure": pressure, "speed": speed, "density": density}
     columns = {name: np.array(x, dtype=float) for name, x in columns.items() if x is not None}
@@ -154,7 +164,9 @@ def series(time, pressure, speed=None, density=None, *, longest_gap=LONGEST_GAP,
     order = np.argsort(seconds, kind="stable")
     sorted_columns = {name: x[order] for name, x in columns.items()}
     again = _repeated(seconds[order], sorted_columns["pressure"], repair)
-    step, full = _on_even_steps(seconds[order][~again], {name: x[~again] for name, x in sorted_columns.items()})
+    step, full = _on_even_steps(
+        seconds[order][~again], {name: x[~again] for name, x in sorted_columns.items()}, most_rows
+    )
 
     measured = np.isfinite(full["pressure"])
     first, end = np.flatnonzero(measured)[[0, -1]] + (0, 1)

@@ -354,3 +354,10 @@ def test_unknown_profiles_are_refused():
     assert decay.shipped_profile("min2019", np.radians(82.2)).label == decay.shipped_profile("min2019").label
     high = decay.decay_time(4.5, 300, 1600e3, 1500e3, decay.shipped_profile().extended())
     assert np.isfinite(high)
+
+
+def test_a_descent_with_too_many_nodes_is_counted_and_refused():
+    with pytest.raises(ValueError, match=r"nodes of quadrature \(some .* GB at a time\), more than the 10,000,000"):
+        decay.decay_time(100.0, 5e3, 1e15, 2e5, 1e-8)
+    with pytest.raises(ValueError, match="more than the 10 that most_nodes"):
+        decay.descend(100.0, 5e3, 8e5, 2e5, 1e-8, most_nodes=10)

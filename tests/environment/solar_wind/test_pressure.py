@@ -219,6 +219,15 @@ def test_short_series_and_clashing_rows_are_refused():
     assert series(**again, repair=True).repairs.repeated == 1
 
 
+def test_a_series_whose_gaps_would_fill_the_memory_is_counted_and_refused():
+    """Two spans of hourly values a thousand million hours apart: 8 GB, for which nothing is asked."""
+    hours = np.concatenate([np.arange(60.0), 1e9 + np.arange(60.0)])
+    with pytest.raises(ValueError, match=r"span 1,000,000,060 of them .*\(some 8 GB\), more than the 10,000,000"):
+        series(hours * HOUR, np.full(120, 2e-9))
+    with pytest.raises(ValueError, match=r"span 1,060 .* more than the 1,000 that most_rows"):
+        series(np.concatenate([np.arange(60.0), 1e3 + np.arange(60.0)]) * HOUR, np.full(120, 2e-9), most_rows=1000)
+
+
 def test_impossible_values_become_gaps_only_on_demand_and_with_a_count():
     found = series(**wind(**spoilt([10, 30], -1.0)), repair=True)
     assert (found.repairs.refused, found.repairs.filled) == (2, 2)

@@ -17,6 +17,7 @@ import rerun as rr
 
 from sailviz.errors import RecordingError
 from sailviz.recording.addresses import check_answer
+from sailviz.recording.web_page import serve_page
 
 STDOUT = "-"
 
@@ -185,7 +186,7 @@ def open_sinks(stream: rr.RecordingStream, sinks: Sequence[Opened]) -> rr.GrpcSe
     stream.set_sinks(*targets)
     for sink in sinks:
         if isinstance(sink, Web) and server is not None:
-            rr.serve_web_viewer(web_port=sink.port, open_browser=False, connect_to=server.uri)
+            serve_page(viewer_binary(), sink.port)
             if sink.open_browser:
                 webbrowser.open(web_address(sink, server))  # rerun's own address would open in the light theme
     return server

@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 import numpy as np
 
 from sailviz.errors import RecordingError
+from sailviz.recording.children import Child
 from sailviz.recording.reader import FilePath, read
 from sailviz.recording.sinks import reason, viewer_binary
-from sailviz.recording.views.children import Child
 from sailviz.recording.views.scratch import scratch
-from sailviz.recording.views.viewers import free_port
+from sailviz.recording.web_page import free_port
 
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient

@@ -4,11 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
-import socket
 import sys
-import time
-import urllib.error
-import urllib.request
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -16,11 +12,11 @@ from typing import Self
 from urllib.parse import quote
 
 from sailviz.errors import RecordingError
+from sailviz.recording.children import Child
 from sailviz.recording.reader import FilePath, read
 from sailviz.recording.sinks import viewer_binary
-from sailviz.recording.views.children import Child
+from sailviz.recording.web_page import check_free, free_port, viewer_environment, wait_for_page
 
-START = 30.0  # s to wait for the server
 BUFFER = 1 << 30  # bytes that the server holds at least; what does not fit is dropped, oldest first
 
 
@@ -53,7 +49,7 @@ class WebServer:
         command += ["--web-viewer-port", str(self._port), "--server-memory-limit", f"{BUFFER + 4 * size}B"]
         self._process = Child([*command, *map(str, self._paths)], viewer_environment())
         try:
-            self._wait_for_page()
+            wait_for_page(self._process, self._host, self._port)
         except BaseException:
             self.__exit__()
             raise
@@ -66,18 +62,6 @@ class WebServer:
         """Wait until the server ends by itself, which it should not: RecordingError."""
         code = self._process.wait()
         raise RecordingError(f"the server for the browser ended by itself with code {code}")
-
-    def _wait_for_page(self) -> None:
-        started = time.monotonic()
-        opener = urllib.request.build_opener(urllib.request.ProxyHandler({}))  # never through a proxy
-        while time.monotonic() - started < START:
-            if self._process.poll() is not None:
-                raise RecordingError(f"the server for the browser ended at once with code {self._process.returncode}")
-            with suppress(urllib.error.URLError, OSError):
-                opener.open(f"http://{self._host}:{self._port}/", timeout=1).close()
-                return
-            time.sleep(0.05)
-        raise RecordingError(f"the server for the browser did not answer within {START:.0f} s")
 
 
 def serve(
@@ -111,28 +95,6 @@ def open_viewer(*paths: FilePath) -> None:
         process.end()
     if code:
         raise RecordingError(f"the viewer ended with code {code}")
-
-
-def viewer_environment() -> dict[str, str]:
-    """What Rerun's viewer is started with: it tells nobody anything, and says only what fails."""
-    return dict(os.environ, RERUN_ANALYTICS="0", RUST_LOG=os.environ.get("RUST_LOG", "error"))
-
-
-def free_port(host: str = "127.0.0.1") -> int:
-    """A port on which nobody listens."""
-    with socket.socket() as probe:
-        probe.bind((host, 0))
-        return int(probe.getsockname()[1])
-
-
-def check_free(host: str, port: int) -> None:
-    """Raise RecordingError where somebody listens on a port."""
-    with socket.socket() as probe:
-        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        try:
-            probe.bind((host, port))
-        except OSError as error:
-            raise RecordingError(f"cannot listen on {host}:{port}: {(error.strerror or str(error)).lower()}") from None
 
 
 @contextmanager

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 import urllib.request
+from pathlib import Path
 from urllib.parse import parse_qs, urlsplit
 
 import numpy as np
@@ -22,13 +23,24 @@ from sailviz.recording import record
 from sailviz.recording.drawing.style import TARGET
 from sailviz.recording.sinks import viewer_binary
 from sailviz.recording.views.screenshot import has_vulkan
-from sailviz.recording.views.viewers import WebServer, free_port, open_viewer
+from sailviz.recording.views.viewers import WebServer, open_viewer
+from sailviz.recording.web_page import free_port
 
 BROWSER, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
 PATIENCE = 75.0  # s for a browser without a graphics card
 FLAGS = """headless=new no-sandbox use-gl=angle use-angle=swiftshader enable-unsafe-swiftshader ignore-gpu-blocklist
     disable-background-networking disable-component-update disable-sync no-first-run window-size=960,540"""
 OFFLINE = "MAP * ~NOTFOUND, EXCLUDE 127.0.0.1"
+RUN_FOR_BROWSER = """
+import sys
+from sailviz.cli import main
+from sailviz.recording import sinks
+from sailviz.recording.web_page import free_port
+import sailviz.recording
+sinks.WEB = sinks.Web(free_port(), free_port(), open_browser=False)  # ports that nobody has
+sailviz.recording.WEB = sinks.WEB
+main(sys.argv[1:])
+"""
 
 
 def end(process):
@@ -179,3 +191,24 @@ def test_chromium_shows_a_recording_without_the_internet(recorded):
             assert orbit >= 5e-4, "the designed orbit is not in the picture"
     finally:
         browser.quit()
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")
+def test_a_run_for_the_browser_is_served_to_this_machine_alone(tmp_path):
+    """Every socket that listens, of the command and of what it started, stands on 127.0.0.1."""
+    words = ["run", "displaced/circular", "--web", "-q", "--set", "propagation.outputs=20", "--set", "expect=[]"]
+    process = subprocess.Popen(
+        [sys.executable, "-c", RUN_FOR_BROWSER, *words], stderr=subprocess.PIPE, text=True, cwd=tmp_path
+    )
+    try:
+        url = next(word for line in process.stderr for word in line.split() if word.startswith("http://"))
+        assert answers(url)
+        page = int(url.split(":")[2].split("/")[0])
+        listening = [line.split() for line in Path("/proc/net/tcp").read_text().splitlines()[1:]]
+        where = {row[1].split(":")[0] for row in listening if row[3] == "0A" and int(row[1].split(":")[1], 16) == page}
+        assert where == {"0100007F"}
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(20) == 0
+        assert not answers(url)
+    finally:
+        end(process)

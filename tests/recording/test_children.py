@@ -12,9 +12,9 @@ from pathlib import Path
 import pytest
 
 from sailviz.errors import RecordingError
+from sailviz.recording.children import Child
 from sailviz.recording.views import scratch as scratches
 from sailviz.recording.views import screenshot
-from sailviz.recording.views.children import Child
 from sailviz.recording.views.scratch import scratch
 from sailviz.recording.views.screenshot import Studio
 
@@ -22,7 +22,7 @@ posix = pytest.mark.skipif(sys.platform == "win32", reason="kills a POSIX proces
 SLEEPER = [sys.executable, "-c", "import time; time.sleep(60)"]
 PARENT = f"""
 import time
-from sailviz.recording.views.children import Child
+from sailviz.recording.children import Child
 from sailviz.recording.views.scratch import scratch
 with scratch() as folder:
     child = Child({SLEEPER!r})

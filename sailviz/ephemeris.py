@@ -26,7 +26,8 @@ CENTURY = 36_525 * DAY
 
 # E. M. Standish, "Keplerian elements for approximate positions of the major planets", JPL, table 1 (1800-2050):
 # a au, e, i deg, mean longitude deg, longitude of perihelion deg, node deg; below each its rate per Julian century.
-# Errors there: 15-40 arcsec in longitude for the inner planets, up to 600 for Saturn. Earth: Earth-Moon barycentre.
+# Errors there as Standish gives them: 15-40 arcsec in longitude for the inner planets, up to 600 for Saturn; as
+# measured: see planet_position. Earth: Earth-Moon barycentre.
 _MEAN = {
     "Mercury": (
         (0.38709927, 0.20563593, 7.00497902, 252.25032350, 77.45779628, 48.33076593),
@@ -98,10 +99,10 @@ def eccentric_anomaly(mean: np.ndarray, e: np.ndarray | float) -> np.ndarray:
 def planet_position(name: str, epoch: Epoch, time: ArrayLike, source: str = "mean-elements") -> np.ndarray:
     """Heliocentric position (n, 3) m, ecliptic of J2000, of a planet in PLANETS at times (n,) s after the epoch (UTC).
 
-    source : "mean-elements", off by up to 43, 30, 20, 55, 206 and 277 arcsec from Mercury to Saturn (measured
-    against DE421 over 2030-2035; Mars: 56,000 km); or "de421", good to kilometres, which needs the extra `ephemeris`
-    and times from 1899 to 2053. ModuleNotFoundError without the extra, ValueError outside those years. Barycentres
-    of planets with moons.
+    source : "mean-elements", off by up to 52, 32, 26, 100, 520 and 740 arcsec from Mercury to Saturn (measured
+    against DE421 over 1900-2050; Mars: 100,000 km, in 2026-2036 71,000 km); or "de421", good to kilometres, which
+    needs the extra `ephemeris` and times from 1899 to 2053. ModuleNotFoundError without the extra, ValueError outside
+    those years. Barycentres of planets with moons.
     """
     if source == "de421":
         return _de421(name, seconds_since_j2000(epoch) + np.asarray(time, dtype=float))

@@ -13,17 +13,18 @@ pytest.importorskip("jplephem")
 pytest.importorskip("skyfield_data")
 
 EPOCH = np.datetime64("2030-01-01", "ns")
-# arcsec, largest difference over 2030-2035. Standish gives, for 1800-2050, 15-40 for the inner planets, 400-600 for the
+# arcsec, largest difference over 1900-2050. Standish gives, for 1800-2050, 15-40 for the inner planets, 400-600 for the
 # giants.
-STATED = {"Mercury": 43, "Venus": 31, "Earth": 21, "Mars": 55, "Jupiter": 207, "Saturn": 278}
+STATED = {"Mercury": 52, "Venus": 32, "Earth": 26, "Mars": 100, "Jupiter": 520, "Saturn": 740}
 
 
 @pytest.mark.parametrize("name", PLANETS)
 def test_mean_elements_are_as_good_as_they_are_said_to_be(name):
-    time = np.linspace(0, 5 * 365.25 * DAY, 400)
-    precise = planet_position(name, EPOCH, time, "de421")
-    off = np.linalg.norm(planet_position(name, EPOCH, time) - precise, axis=1) / np.linalg.norm(precise, axis=1)
-    assert 0.3 * STATED[name] < np.degrees(off.max()) * 3600 <= STATED[name]
+    begin = np.datetime64("1900-01-01", "ns")
+    time = np.linspace(0, 150 * 365.25 * DAY, 6001)
+    found, precise = planet_position(name, begin, time), planet_position(name, begin, time, "de421")
+    off = np.arctan2(np.linalg.norm(np.cross(found, precise), axis=1), np.sum(found * precise, axis=1))
+    assert 0.9 * STATED[name] < np.degrees(off.max()) * 3600 <= STATED[name]
 
 
 def test_the_earth_of_de421_obeys_keplers_laws_over_a_day():

@@ -41,7 +41,8 @@ def words(found: Solution) -> Iterator[str]:
         rows += [("true anomalies", f"{anomalies} at departure and arrival")]
     rows += [("costates", " ".join(f"{x:.10g}" for x in flight.costates))]
     of = "radius, radial and transverse speed; mu = r0 = 1" if found.kind == "circles" else "position, velocity; 1 au"
-    rows += [("", f"of {of}, H = +1: minus the days won per unit, in {_unit(found):.4f} d")]
+    scaled = f"H = {flight.hamiltonian:.4f}" if isinstance(flight, Rendezvous) else "H = +1"
+    rows += [("", f"of {of}, {scaled}: minus the days won per unit, in {_unit(found):.4f} d")]
     position, _, switches = path_of(flight)
     rows += [("closest to the Sun", f"{np.linalg.norm(position, axis=1).min() / AU:.4f} au")]
     if len(switches):

@@ -82,8 +82,9 @@ class PrimerSteering(Section):
 
 
 class OptimalSteering(PrimerSteering):
-    """A minimum-time flight from its initial costates, canonical (mu = 1 au = 1, H = +1): three of a planar flight,
-    for the radius, the radial and the transverse speed, or six, for position and velocity."""
+    """A minimum-time flight from its initial costates: three of a planar flight, for the radius, the radial and the
+    transverse speed (mu = 1, distance of the start = 1), or six, for position and velocity (mu = 1 au = 1). Only their
+    ratios steer: all may be scaled alike, whatever H is then."""
 
     kind: Literal["optimal"]
     costates: Annotated[list[float], Field(min_length=3, max_length=6)]

@@ -91,7 +91,8 @@ def scene_of(
     if form == "costates":
         numbers = flight.costates if circular else it.costates
         units = "mu = 1, distance of the start = 1" if circular else "mu = 1 au = 1"
-        lines += ['kind = "optimal"', f"costates = {_list(numbers)}  # H = +1, {units}"]
+        scaled = f"{flight.hamiltonian:.6g}" if isinstance(flight, Rendezvous) else "+1"
+        lines += ['kind = "optimal"', f"costates = {_list(numbers)}  # H = {scaled}, {units}"]
     else:
         lines += _steering_table(it)
     lines += ["", "[target]", *(f"{key} = {_value(value)}" for key, value in target.items())]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 
 import numpy as np
@@ -10,8 +11,9 @@ import pytest
 import sailviz
 from sailviz import transfers
 from sailviz.checks.expectations import check
-from sailviz.constants import AU, DAY
+from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.design.minimum_time import circle_to_circle
+from sailviz.shipped import shipped_scenes
 
 
 @pytest.fixture(scope="module")
@@ -47,6 +49,47 @@ def test_the_target_is_drawn_where_the_flight_ends(solutions):
     # 361 points of a circle lie 0.0044 of its radius from anything between them
     assert np.linalg.norm(target - run.position[-1], axis=1).min() < 0.01 * AU
     assert np.linalg.norm(initial - run.position[0], axis=1).min() < 0.01 * AU
+
+
+def hamiltonian(scene):
+    """H of a scene's own costates, by its definition: lam_r v + lam_v (a_gravity + a_thrust), canonical."""
+    run = sailviz.simulate(scene.with_values({"propagation": {"duration_d": 1e-3, "outputs": 2}}))
+    # three costates of a planar flight count in the distance of the start
+    unit = np.linalg.norm(run.position[0]) if len(scene.steering.costates) == 3 else AU
+    r, v = run.position[0] / unit, run.velocity[0] / np.sqrt(MU_SUN / unit)
+    a = run.thrust.acceleration[0] / (MU_SUN / unit**2) - r / np.linalg.norm(r) ** 3
+    lam = np.array(scene.steering.costates)
+    if len(lam) == 3:
+        assert r @ v == pytest.approx(0, abs=1e-12)
+        up, along = r, np.array([-r[1], r[0], 0.0])
+        # of angle none; radial speed u = 0, transverse speed w
+        w = v @ along
+        rates = np.array([0.0, a @ up + w * w, a @ along])
+        return lam @ rates
+    return lam[:3] @ v + lam[3:] @ a
+
+
+def claimed(text):
+    """The value of H that a scene's text states."""
+    (value,) = re.findall(r"H = ([+-]?\d+(?:\.\d+)?)", text)
+    return float(value), 0.51 * 10.0 ** -len(value.partition(".")[2])
+
+
+OPTIMAL = [name for name, path in shipped_scenes().items() if "H = " in path.read_text()]
+
+
+@pytest.mark.parametrize("name", OPTIMAL)
+def test_a_shipped_flight_has_the_hamiltonian_that_it_states(name):
+    value, rounding = claimed(shipped_scenes()[name].read_text())
+    assert hamiltonian(sailviz.load_scene(name)) == pytest.approx(value, abs=max(1e-7, rounding * (value != 1)))
+
+
+@pytest.mark.parametrize("name", ["circles", "orbits", "rendezvous"])
+def test_a_written_flight_has_the_hamiltonian_that_it_states(solutions, name):
+    text = transfers.scene_of(solutions[name])
+    value, _ = claimed(text)
+    assert (value == 1) == (name != "rendezvous")
+    assert hamiltonian(sailviz.load_scene(tomllib.loads(text))) == pytest.approx(value, rel=1e-5)
 
 
 def test_a_designed_result_can_be_written_without_words(solutions):

@@ -48,9 +48,11 @@ class Window:
 @dataclass(frozen=True)
 class Rendezvous:
     """A flight that meets a planet. time s; departure, arrival datetime64; revolutions swept about the Sun; costates
-    (6,) at departure, -d time / d (position, velocity) in units of mu = 1 and one au; residual, largest miss in the
-    same units; hamiltonian_drift relative, along the flight; solutions distinct ones found for this date. position m
-    and velocity m/s (3,) at departure. window : the curve around the best departure, where a window was asked for.
+    (6,) at departure, -d time / d (position, velocity) in units of mu = 1 and one au; hamiltonian, the H that belongs
+    to them: +1 and the planet's motion at the arrival times the costates there, since the end moves; residual, largest
+    miss in the same units; hamiltonian_drift relative, along the flight; solutions distinct ones found for this date.
+    position m and velocity m/s (3,) at departure. window : the curve around the best departure, where a window was
+    asked for.
 
     feasible False and reason: none was found; time is then NaN.
     """
@@ -60,6 +62,7 @@ class Rendezvous:
     arrival: np.datetime64
     revolutions: float
     costates: np.ndarray
+    hamiltonian: float
     residual: float
     hamiltonian_drift: float
     solutions: int
@@ -236,6 +239,7 @@ def _result(
         revolutions=revolutions(flight.rows),
         costates=unknowns.costates / gain,
         residual=float(np.abs(flight.end[STATE] - there).max()),
+        hamiltonian=flight.hamiltonian / gain,
         hamiltonian_drift=flight.drift / gain,
         solutions=local,
         claim=f"best found over {where}; a faster flight is not excluded",
@@ -254,6 +258,6 @@ def _nothing(
 ) -> Rendezvous:
     (state,) = meeting.state(meeting.origin, 0.0)
     return Rendezvous(
-        np.nan, first, np.datetime64("NaT"), np.nan, np.full(6, np.nan), np.nan, np.nan, 0, reason, False, reason,
-        state[POSITION] * AU, state[VELOCITY] * SPEED_UNIT, device, characteristic_acceleration,
+        np.nan, first, np.datetime64("NaT"), np.nan, np.full(6, np.nan), np.nan, np.nan, np.nan, 0, reason,
+        False, reason, state[POSITION] * AU, state[VELOCITY] * SPEED_UNIT, device, characteristic_acceleration,
     )  # fmt: skip

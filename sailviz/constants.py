@@ -24,7 +24,8 @@ ATOMIC_MASS = 1.660_539_066_60e-27  # kg: CODATA 2018
 MASS_ELECTRON = 9.109_383_7015e-31  # kg: CODATA 2018
 MASS_PROTON = 1.672_621_923_69e-27  # kg: CODATA 2018
 
-RADIATION_PRESSURE = 4.563e-6  # N/m2 at 1 au: thesis, section 3.1
+RADIATION_PRESSURE = 4.563e-6  # N/m2 at 1 au: thesis, section 3.1; 0.5 % above the 1361 W/m2 of today over c
+SPEED_OF_LIGHT = 299_792_458.0  # m/s: the definition of the metre
 GRAVITY_AT_1_AU = MU_SUN / AU**2  # m/s2, the Sun's pull at 1 au, 5.930083519e-3
 WIND_POTENTIAL = 1_000.0  # V, potential of the solar-wind ions: thesis, (3.41)
 WIND_PRESSURE = 2.0e-9  # Pa, mean solar-wind dynamic pressure at 1 au: thesis, (3.41)

@@ -53,9 +53,15 @@ class Film:
         return self.b1 + self.b2 + self.b3
 
     def characteristic_acceleration(
-        self, *, lightness: float | None = None, area: float | None = None, mass: float | None = None
+        self,
+        *,
+        lightness: float | None = None,
+        area: float | None = None,
+        mass: float | None = None,
+        pressure: float = RADIATION_PRESSURE,
     ) -> float:
-        """a_c in m/s2 at 1 au, facing the Sun, from the lightness number or from area m2 and mass kg.
+        """a_c in m/s2 at 1 au, facing the Sun, from the lightness number or from area m2 and mass kg in a radiation
+        pressure N/m2 at 1 au, the thesis' 4.563e-6 by default.
 
         (3.3), (3.5), (3.13), (3.22). For an imperfect film of given efficiency the lightness number is that of the
         ideal film of the same loading, as in (3.12). ValueError for a size that is no positive number.
@@ -64,10 +70,10 @@ class Film:
             return self.efficiency * lightness * GRAVITY_AT_1_AU
         if area is None or mass is None:
             raise TypeError("a characteristic acceleration takes a lightness number, or an area and a mass")
-        for name, size in (("area", area), ("mass", mass)):
+        for name, size in (("area", area), ("mass", mass), ("pressure", pressure)):
             if isinstance(size, complex) or not 0 < size < np.inf:
                 raise ValueError(f"the {name} must be a positive number, not {size!r}")
-        return self.efficiency * 2 * RADIATION_PRESSURE * (area / mass) * self.total
+        return self.efficiency * 2 * pressure * (area / mass) * self.total
 
     def lightness(self, characteristic_acceleration: float) -> float:
         """Lightness number beta of a_c in m/s2: (3.3), (3.13), (3.22)."""

@@ -121,6 +121,7 @@ VALUES: dict[str, Value] = {
     "apogee_altitude": _above_surface(apoapsis),
     "quasi_circular_altitude": _acted("quasi_circular_altitude_m"),
     "sunlit": _acted("sunlit"),  # its mean is the share of the time
+    "sunlit_fraction": _acted("sunlit_fraction"),  # of the Sun's disc
     "force_law_valid": _acted("force_law_valid"),
     "plasma_force": _acted("plasma_force_N_m"),
     "plasma_density": _acted("plasma_density_per_m3"),

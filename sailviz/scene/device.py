@@ -122,6 +122,11 @@ class SolarSail(Device):
         one_of(self, "characteristic_acceleration", "lightness_number", "area+mass")
         return self
 
+    @property
+    def by_area(self) -> bool:
+        """Whether its area and mass make its strength."""
+        return self.characteristic_acceleration is None and self.lightness_number is None
+
 
 class ElectricSail(Device):
     """An electric solar wind sail. Its strength: characteristic acceleration, or hardware by (3.40)-(3.41)."""

@@ -1,14 +1,16 @@
-"""What surrounds a craft: [environment] and the kinds inside it."""
+"""What surrounds a craft: [environment] and the kinds inside it, and [light]."""
 
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from sailviz.constants import SPEED_OF_LIGHT
 from sailviz.scene.values import (
     POSITIVE,
     Angle,
     ForcePerLength,
     IonMass,
+    Irradiance,
     Length,
     MassDensity,
     Moment,
@@ -153,6 +155,27 @@ class MsisAtmosphere(Section):
 
     kind: Literal["nrlmsis-2.1"]
     ap: Annotated[float, Field(ge=0, le=400)] = 10.0
+
+
+class Light(Section):
+    """How bright the Sun is at 1 au, which makes a characteristic acceleration of area and mass: the pressure of its
+    light on a black surface facing it, or its irradiance, which over the speed of light is that pressure."""
+
+    pressure: Annotated[Pressure, POSITIVE] | None = None
+    irradiance: Annotated[Irradiance, POSITIVE] | None = None
+
+    @model_validator(mode="after")
+    def _said_once(self) -> Self:
+        one_of(self, "pressure", "irradiance")
+        return self
+
+    @property
+    def radiation_pressure(self) -> float:
+        """N/m2 at 1 au."""
+        if self.pressure is not None:
+            return self.pressure
+        assert self.irradiance is not None  # or the section would not have been accepted
+        return self.irradiance / SPEED_OF_LIGHT
 
 
 class ThirdBody(Section):

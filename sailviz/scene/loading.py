@@ -24,7 +24,7 @@ from sailviz.errors import Fault, SceneError
 from sailviz.scene.body import CustomBody, Target
 from sailviz.scene.conflicts import conflicts
 from sailviz.scene.device import Devices
-from sailviz.scene.environment import Environment
+from sailviz.scene.environment import Environment, Light
 from sailviz.scene.faults import faults_of, locate
 from sailviz.scene.overrides import overridden, place_of
 from sailviz.scene.sections import Approximation, Chaos, Ensemble, Expectation, Limits, Propagation, Recording, Watched
@@ -52,6 +52,7 @@ class Scene(Section):
     steering: Steering | None = None
     target: Target | None = None
     environment: Environment = Environment()
+    light: Light | None = None
     propagation: Propagation
     event: list[Watched] = []
     approximation: list[Approximation] = []
@@ -81,8 +82,9 @@ class Scene(Section):
         return self._raw
 
     def resolved(self) -> dict[str, Any]:
-        """Every value, defaults included, SI, ready for JSON."""
-        return self.model_dump(mode="json")
+        """Every value, defaults included, SI, ready for JSON. A light that is not said is left out: what scenes were
+        before it could be said, they still are."""
+        return self.model_dump(mode="json", exclude={"light"} if self.light is None else None)
 
     def identity(self) -> str:
         """Hash of the resolved scene, 16 hexadecimal digits: equal scenes have equal recordings."""

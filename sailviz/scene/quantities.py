@@ -49,6 +49,7 @@ DIMENSIONS = {
     "apogee_altitude": "length",
     "quasi_circular_altitude": "length",
     "sunlit": "none",
+    "sunlit_fraction": "none",
     "force_law_valid": "none",
     "plasma_force": "force_per_length",
     "plasma_density": "number_density",

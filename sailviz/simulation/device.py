@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 import numpy as np
 
 from sailviz import ephemeris
-from sailviz.constants import ATOMIC_MASS, AU, STANDARD_GRAVITY
+from sailviz.constants import ATOMIC_MASS, AU, RADIATION_PRESSURE, STANDARD_GRAVITY
 from sailviz.environment import ionosphere
 from sailviz.propagate import dynamics, events
 from sailviz.propagate import low_orbit_callback as low_orbit
@@ -53,7 +53,7 @@ class Device(Generic[D]):
     words: Callable[[D], Words] = no_words
     size: Callable[[D], dict[str, Any]] = _no_size  # keywords of run.arrays.Craft
     sail: Callable[[D], Film | str] | None = None  # of a sail: as design functions take it
-    strength: Callable[[D, Any], float] | None = None  # of a sail: a_c m/s2, from the section and the design
+    strength: Callable[[D, Scene, Any], float] | None = None  # of a sail: a_c m/s2, from section, scene and design
     events: Callable[[D, Body], list[Happening]] = _no_events  # that come with it
     columns: Callable[[D, Scene, dynamics.Model, Array, Array], Columns] = no_columns  # observed, states of low orbit
     pull: Callable[[Array, Array, Array], tuple[Array, Array]] | None = None  # normal and acceleration, from those
@@ -78,7 +78,7 @@ def sail_strength(scene: Scene, design: Any) -> float:
     """Characteristic acceleration, m/s2, of either sail."""
     strength = device_of(scene).strength
     assert strength is not None  # only sails are asked for it
-    return strength(scene.device, design)
+    return strength(scene.device, scene, design)
 
 
 def _said_strength(device: SolarSail | ElectricSail, design: Any) -> float | None:
@@ -89,18 +89,26 @@ def _said_strength(device: SolarSail | ElectricSail, design: Any) -> float | Non
     return given
 
 
-def _film_strength(device: SolarSail, design: Any) -> float:
+def radiation_pressure(scene: Scene) -> float | None:
+    """N/m2 at 1 au where a sail's area and mass make its strength; None where nothing depends on it."""
+    if not isinstance(scene.device, SolarSail) or not scene.device.by_area:
+        return None
+    return RADIATION_PRESSURE if scene.light is None else scene.light.radiation_pressure
+
+
+def _film_strength(device: SolarSail, scene: Scene, design: Any) -> float:
     said = _said_strength(device, design)
     if said is not None:
         return said
-    return _film(device).characteristic_acceleration(
-        lightness=device.lightness_number, area=device.area, mass=device.mass
-    )
+    film, pressure = _film(device), radiation_pressure(scene)
+    if pressure is None:
+        return film.characteristic_acceleration(lightness=device.lightness_number)
+    return film.characteristic_acceleration(area=device.area, mass=device.mass, pressure=pressure)
 
 
 def _solar_sail(device: SolarSail, scene: Scene, design: Any) -> LoweredDevice:
     film = _film(device)
-    strength = _film_strength(device, design) * AU**2 / film.total
+    strength = _film_strength(device, scene, design) * AU**2 / film.total
     return LoweredDevice(dynamics.SOLAR_SAIL, solar_sail.Parameters(strength, film.b1, film.b2, film.b3))
 
 
@@ -112,7 +120,7 @@ def _solar_sail_size(device: SolarSail) -> dict[str, Any]:
     return {"side": None if device.area is None else float(np.sqrt(device.area))}
 
 
-def _electric_strength(device: ElectricSail, design: Any) -> float:
+def _electric_strength(device: ElectricSail, scene: Scene, design: Any) -> float:
     said = _said_strength(device, design)
     if said is not None:
         return said
@@ -123,7 +131,7 @@ def _electric_strength(device: ElectricSail, design: Any) -> float:
 
 def _electric_sail(device: ElectricSail, scene: Scene, design: Any) -> LoweredDevice:
     model = electric_sail.MODELS[device.model]
-    numbers = electric_sail.Parameters(_electric_strength(device, design), model, device.pitch_limit)
+    numbers = electric_sail.Parameters(_electric_strength(device, scene, design), model, device.pitch_limit)
     return LoweredDevice(dynamics.ELECTRIC_SAIL, numbers)
 
 

@@ -56,6 +56,8 @@ def low_orbit_columns(p: Plan, time: Array, states: Array, values: Array) -> Col
         columns["earth_rotation_rad"] = ephemeris.greenwich_sidereal_time(epoch, time)
     if watches_shadow(scene):
         columns["sunlit"] = values[low_orbit.LIGHT] > 0.5
+        if around.shadow == "cone":
+            columns["sunlit_fraction"] = values[low_orbit.LIGHT]
     if around.solar_flux is not None:
         columns["solar_flux_sfu"] = values[low_orbit.SOLAR_FLUX]
     if around.atmosphere is not None:

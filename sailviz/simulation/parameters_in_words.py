@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sailviz.simulation.device import device_of, strength_or_none
+from sailviz.simulation.device import device_of, radiation_pressure, strength_or_none
 from sailviz.simulation.environment import parts_of
 from sailviz.simulation.start import departure
 from sailviz.simulation.steering import steering_of
@@ -22,6 +22,9 @@ def parameters_in_words(scene: Scene, design: Design) -> Words:
     strength = strength_or_none(scene, design)
     if strength is not None:
         rows.append(("a_c", acceleration(strength)))
+    pressure = radiation_pressure(scene)
+    if pressure is not None:
+        rows.append(("radiation pressure", f"{pressure * 1e6:.6g} µN/m² at 1 au"))
     rows += device_of(scene).words(scene.device)
     rows += steering_of(scene.steering).words(scene.steering, design)
     for part, record in parts_of(scene):

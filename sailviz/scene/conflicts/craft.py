@@ -9,7 +9,7 @@ from sailviz.scene.conflicts.devices import CONTROLS
 from sailviz.scene.conflicts.records import device_of, start_of, steering_of
 from sailviz.scene.conflicts.starts import STARTS
 from sailviz.scene.conflicts.surroundings import IRRADIANCES, WINDS
-from sailviz.scene.device import control_of
+from sailviz.scene.device import SolarSail, control_of
 from sailviz.scene.units_in_keys import words_of_kind
 
 if TYPE_CHECKING:
@@ -94,6 +94,13 @@ def surface_of_the_body(scene: Scene) -> Faults:
 def has_surface(scene: Scene) -> bool:
     """Whether the central body has a radius."""
     return isinstance(scene.body, str) or scene.body.radius != 0
+
+
+def brightness(scene: Scene) -> Faults:
+    """How bright the light is matters where it makes an acceleration of area and mass."""
+    if scene.light is None or (isinstance(scene.device, SolarSail) and scene.device.by_area):
+        return []
+    return [("light", "the brightness of the light acts on a solar sail that gives its area and its mass, on no other")]
 
 
 def varying_drive(scene: Scene) -> Faults:

@@ -29,6 +29,7 @@ QUESTIONS = (
     departures.frame_of_steering,
     departures.propellant,
     craft.varying_drive,
+    craft.brightness,
     moments.epoch,
     low_orbit.known_of_the_earth,
     low_orbit.tether,

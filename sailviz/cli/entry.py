@@ -15,7 +15,6 @@ from typing import Any
 
 import click
 
-from sailviz.cli.endings import asked_to_end, printable, unforeseen
 from sailviz.cli.shared import INTERRUPTED, UNREAD, bearable, tell
 
 COMMANDS = {  # name, which is also that of the module -> function there
@@ -69,6 +68,8 @@ class Verbs(click.Group):
         """Run a command; as a program of its own, one that ends properly when it is asked to."""
         if not standalone_mode:
             return super().main(args, prog_name, complete_var, standalone_mode=False, **more)
+        from sailviz.cli.endings import asked_to_end, printable
+
         printable()
         with asked_to_end():
             return super().main(args, prog_name, complete_var, standalone_mode=True, **more)
@@ -92,6 +93,8 @@ class Verbs(click.Group):
             os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # so that Python's last flush fails no more
             context.exit(UNREAD)
         except Exception as error:
+            from sailviz.cli.endings import unforeseen
+
             context.exit(unforeseen(error))
 
 

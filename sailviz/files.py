@@ -19,6 +19,7 @@ from pathlib import Path
 
 from sailviz.errors import OutputError
 
+PROBE = 1 << 16  # bytes that are tried where something could not be written
 LEFTOVER_AGE = 60.0  # s: a part of a run that may have begun just now is left alone
 
 
@@ -103,6 +104,11 @@ class Output:
         self.part.unlink(missing_ok=True)
 
 
+def check(path: str | os.PathLike[str], what: str = "file") -> None:
+    """Raise OutputError for what cannot be written, before it is computed."""
+    Output.reserve(path, what).discard()
+
+
 @contextmanager
 def writing(
     path: str | os.PathLike[str], what: str = "file", check: Callable[[Path], None] | None = None
@@ -140,6 +146,23 @@ def reason(error: OSError, part: Path | None = None) -> str:
     if error.errno == errno.EPIPE:
         return "nobody reads what is written"
     return (error.strerror or str(error)).lower()
+
+
+def lacking(part: Path) -> str:
+    """Of a part that somebody else's code could not write: what is missing, found by writing a little more to it. ""
+    where there is room."""
+    try:
+        with open(part, "rb+") as file:
+            end = file.seek(0, os.SEEK_END)
+            try:
+                file.write(bytes(PROBE))
+                file.flush()
+                os.fsync(file.fileno())
+            finally:
+                file.truncate(end)
+    except OSError as error:
+        return reason(error, part)
+    return ""
 
 
 def sweep(target: Path) -> None:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from sailviz import files
 from sailviz.errors import RecordingError
 from sailviz.recording.comparison.comparer import compare
 from sailviz.recording.comparison.differences import default_tolerance
@@ -69,7 +70,7 @@ class Regression:
             text += "\n[atol]\n"
         missing = [(name, value) for name, value in _defaults(data).items() if name not in kept.get("atol", {})]
         text += "".join(f'"{name}" = {_number(value)}\n' for name, value in missing)
-        self.tolerances.write_text(text)
+        files.write_text(self.tolerances, text, "tolerances")
 
     def check(
         self,
@@ -98,7 +99,7 @@ class Regression:
         if comparison.equal:
             return Outcome(True, comparison, str(comparison))
         folder = leave_in()
-        (folder / "difference.txt").write_text(f"{comparison}\n")
+        files.write_text(folder / "difference.txt", f"{comparison}\n", "comparison")
         shutil.copy(self.baseline, folder / "baseline.npz")
         if self.tolerances.exists():
             shutil.copy(self.tolerances, folder / "baseline.toml")

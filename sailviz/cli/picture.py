@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from sailviz import files
 from sailviz.cli.numbers import Number
 from sailviz.cli.outputs import file_at, file_or_folder, make_folder
 from sailviz.cli.shared import (
@@ -136,10 +137,9 @@ def _shoot(path: Path, out: Path, view: str | None, at: str, size: tuple[int, in
 
     from sailviz.recording.views import screenshot
     from sailviz.recording.views.instant import fraction_of
-    from sailviz.recording.views.movie import written_whole
 
     fraction = fraction_of(path, at)
-    with written_whole(out) as part:
+    with files.writing(out, "picture") as part:
         report = screenshot.picture(path, part, view=view, at=fraction, size=size, panels=not bare)
     return replace(report, path=out)
 

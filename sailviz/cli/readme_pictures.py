@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from sailviz import files
 from sailviz.errors import RecordingError
-from sailviz.recording.views.movie import palette_of, written_whole
+from sailviz.recording.views.movie import palette_of
 from sailviz.recording.views.scratch import scratch
 from sailviz.recording.views.screenshot import FRAME, Studio, check_vulkan
 from sailviz.shipped import shipped_scenes
@@ -105,7 +106,7 @@ def photograph(recording: Path, out: Path, pose: Pose, size: tuple[int, int]) ->
         report = studio.shoot(shot, view=pose.view or None, at=pose.at)
     if report.errors:
         raise RecordingError(f"a view complains while {out} is taken: {report.errors[0]}")
-    with written_whole(out) as part:
+    with files.writing(out, "picture") as part:
         part.write_bytes(squeezed(shot.read_bytes()))
 
 

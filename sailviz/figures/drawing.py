@@ -8,6 +8,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from sailviz import files
+from sailviz.errors import OutputError
 from sailviz.figures.catalogue import CATALOGUE, Entry
 
 if TYPE_CHECKING:
@@ -60,13 +62,18 @@ def draw(name: str, path: str | Path, style: str = "dark", dpi: int = 160, **opt
     kind = path.suffix.lower().lstrip(".")
     if kind not in FORMATS:
         raise FigureError(f"a figure is written as {', '.join(FORMATS)}; {path.name} ends in none of them")
+    try:
+        files.check(path, "figure")
+    except OutputError as error:
+        raise FigureError(str(error)) from None
     drawn = figure(name, style, **options)
     from sailviz.figures import page
 
     try:
-        page.save(drawn, path, dpi)
-    except OSError as error:
-        raise FigureError(f"cannot write {path}: {(error.strerror or str(error)).lower()}") from None
+        with files.writing(path, "figure") as part:
+            page.save(drawn, part, kind, dpi)
+    except OutputError as error:
+        raise FigureError(str(error)) from None
     return path
 
 

@@ -148,8 +148,9 @@ def compose(entry: Entry, style_name: str, options: Mapping[str, object]) -> Fig
     return figure
 
 
-def save(figure: Figure, path: Path, dpi: int) -> None:
-    """Write a figure so that drawing it again gives the same file: no dates, no random names, words that stay words."""
-    dates = {".png": {"Software": None}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+def save(figure: Figure, path: Path, kind: str, dpi: int) -> None:
+    """Write a figure, kind png, svg or pdf, so that drawing it again gives the same file: no dates, no random names,
+    words that stay words."""
+    dates = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
     with matplotlib.rc_context({"svg.fonttype": "none", "svg.hashsalt": "sailviz"}):
-        figure.savefig(path, dpi=dpi, metadata=dates[path.suffix.lower()])
+        figure.savefig(path, format=kind, dpi=dpi, metadata=dates[kind])

@@ -9,7 +9,6 @@ oem            position and velocity, CCSDS 502.0-B, in EME2000
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
@@ -17,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow as pa
 
+from sailviz import files
 from sailviz.errors import RecordingError
 from sailviz.recording.comparison.tables import Evidence, Source, Table, evidence
 from sailviz.recording.reader import EventRow, FilePath
@@ -39,6 +39,7 @@ def export(
     data = evidence(source)
     path, to = _target(data, out, to)
     wanted = tuple("/" + name.strip("/") for name in entities)
+    files.check(path, "table")
     try:
         if to == "oem":
             if wanted and wanted != ("/state",):
@@ -68,13 +69,9 @@ def _target(data: Evidence, given: FilePath | None, to: str) -> tuple[Path, str]
 
 
 def written_whole(path: Path, write: Callable[[Path], None]) -> Path:
-    """Write under a temporary name first, so that a file appears whole."""
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
+    """Write a table, whole or not at all -> its path. OutputError where it cannot be written."""
+    with files.writing(path, "table") as part:
         write(part)
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
     return path
 
 

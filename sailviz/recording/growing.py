@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import rerun as rr
 
-from sailviz.errors import PropagationError, RecordingError
-from sailviz.recording import contract, timelines
+from sailviz.errors import OutputError, PropagationError, RecordingError
+from sailviz.files import Output, lacking, reason
+from sailviz.recording import checksums, contract, timelines
+from sailviz.recording.drain import Drain
 from sailviz.recording.drawing.drawing import Drawing
-from sailviz.recording.sinks import File, Memory, Opened, Web, attach, web_address
+from sailviz.recording.framing import framing
+from sailviz.recording.sinks import Memory, Opened, Web, attach, web_address
 from sailviz.run.arrays import Event, Run
 
 
@@ -26,6 +31,8 @@ class GrowingRecording:
         self._setting = setting = first.setting
         self._ended = ""
         self._events: list[Event] = []  # those that lie after the last row seen
+        self._written_events: list[Event] = []
+        self._sums = checksums.ContentSums()
         # the viewer keeps one arrangement of views for each application: each scene needs its own
         application = f"sailviz_{setting.family}_{setting.identity[:8]}"
         self.stream = rr.RecordingStream(application, recording_id=setting.identity, send_properties=False)
@@ -36,14 +43,19 @@ class GrowingRecording:
         try:
             self._drawing = Drawing(self.stream, first)
         except BaseException:
-            self.stream.disconnect()
+            self.abandon()
             raise
 
     @property
     def url(self) -> str:
         """Where a browser finds it, "" where none is served."""
         web = next((sink for sink in self._sinks if isinstance(sink, Web)), None)
-        return web_address(web, self._attached) if web and isinstance(self._attached, rr.GrpcServerSink) else ""
+        return web_address(web, self._attached.server) if web and self._attached.server else ""
+
+    @property
+    def drains(self) -> tuple[Drain, ...]:
+        """The pipes that carry its bytes on."""
+        return tuple(self._attached.drains)
 
     @property
     def identity(self) -> str:
@@ -56,6 +68,7 @@ class GrowingRecording:
         for entity, table in contract.tables(block).items():
             if table:
                 self.stream.send_columns(entity, index, contract.columns(entity, table))
+                self._sums.add(entity, table)
         self._add_events(block)
         self._drawing.add(block)
         first = self.last is None
@@ -73,23 +86,70 @@ class GrowingRecording:
         self._write_events(self._events, np.full(len(self._events), self.rows - 1))
         self._drawing.finish(last)
         self._write_scene(complete)
-        if isinstance(self._attached, rr.MemoryRecording) and isinstance(self._sinks[0], Memory):
+        self._write_sums(complete)
+        memory = self._attached.memory
+        if memory is not None and isinstance(self._sinks[0], Memory):
             self._flush()
-            self._sinks[0].bytes = self._attached.drain_as_bytes()
-        if any(isinstance(sink, Web) for sink in self._sinks):
+            self._sinks[0].bytes = memory.drain_as_bytes()
+        served = any(isinstance(sink, Web) for sink in self._sinks)
+        if served:
             self._flush()  # disconnecting would stop the server; Recorded.serve does it
+            for drain in self.drains:
+                drain.release()
         else:
             self.stream.disconnect()
-        files = [sink for sink in self._sinks if isinstance(sink, File)]
+            for drain in self.drains:
+                self._told(drain, drain.close)
+        files = [sink for sink in self._sinks if isinstance(sink, Output)]
         for file in files:
-            file.publish()
+            file.publish(partial(check_whole, file=file, served=served))
         return tuple(file.path for file in files)
 
+    def abandon(self) -> None:
+        """Let go of everything that is open, whatever becomes of it."""
+        self.stream.disconnect()
+        for drain in self.drains:
+            with suppress(OSError):
+                drain.close()
+
     def _flush(self) -> None:
+        """Wait until everything is where it should be. RecordingError, at once, where it cannot be written."""
         try:
             self.stream.flush(timeout_sec=60)
         except RuntimeError as error:
+            for file in self._attached.direct:
+                why_not = lacking(file.part)
+                if why_not:
+                    raise OutputError(f"cannot write the recording {file.path}: {why_not}") from None
             raise RecordingError(f"the recording could not be written: {str(error).splitlines()[0]}") from None
+        for drain in self.drains:
+            self._told(drain, drain.settle)
+
+    def _told(self, drain: Drain, wait: Callable[[], None]) -> None:
+        try:
+            wait()
+        except OSError as error:
+            part = next((sink.part for sink in self._sinks if isinstance(sink, Output)), None)
+            words = f"cannot write the recording {drain.word}: {reason(error, part)}{self._needed(drain)}"
+            raise OutputError(words) from None
+
+    def _needed(self, drain: Drain) -> str:
+        """How much a run of this length takes, in words; "" where that cannot be told yet."""
+        if not self.rows or self.rows >= self._setting.rows:
+            return ""
+        whole = drain.count * self._setting.rows / self.rows
+        return f" (all {self._setting.rows:,} rows take about {whole / 1e6:,.3g} MB)"
+
+    def _write_sums(self, complete: bool) -> None:
+        """The last that is logged: what was written so far has these checksums."""
+        scene = contract.scene(self._setting, rows=self.rows, complete=complete, ended=self._ended)
+        sums = self._sums.result() | checksums.event_sum(self._written_events)
+        sums["/scene"] = checksums.sum_of_facts(scene)
+        self._flush()
+        of_files = {(drain.count, drain.sha256) for drain in self.drains}
+        of_files |= {checksums.sum_of_file(file.part) for file in self._attached.direct}
+        of_file = of_files.pop() if len(of_files) == 1 else None
+        self.stream.log(checksums.ENTITY, checksums.facts(sums, of_file), static=True)
 
     def _add_events(self, block: Run) -> None:
         """Write the events that have a row at or after them by now; keep the others."""
@@ -102,6 +162,7 @@ class GrowingRecording:
     def _write_events(self, events: list[Event], number: np.ndarray) -> None:
         if not events:
             return
+        self._written_events += events
         index = timelines.time_columns(self._setting, number, [event.time for event in events])
         self.stream.send_columns("/events", index, contract.event_columns(events))
         self._drawing.add_events(events, index)
@@ -109,6 +170,16 @@ class GrowingRecording:
     def _write_scene(self, complete: bool) -> None:
         scene = contract.scene(self._setting, rows=self.rows, complete=complete, ended=self._ended)
         self.stream.log("/scene", scene, static=True)
+
+
+def check_whole(part: Path, file: Output, served: bool) -> None:
+    """Raise OutputError for a file that Rerun could not write to its end: it does not say so itself. served : the
+    index follows when the browser is no longer served."""
+    frames = framing(part, str(file.path))
+    ended = frames.whole == frames.size if served else frames.indexed and not frames.cut
+    if not ended or checksums.sums_of(part, frames) is None:
+        why_not = lacking(part) or "it was not written to its end"
+        raise OutputError(f"cannot write the recording {file.path}: {why_not}")
 
 
 def event_at(row: Run, name: str) -> Event:

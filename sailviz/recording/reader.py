@@ -18,24 +18,27 @@ import numpy as np
 from rerun.chunk import Chunk, LazyChunkStream, LazyStore, RrdReader
 
 from sailviz.errors import RecordingError
+from sailviz.files import reason
+from sailviz.recording import checksums
 from sailviz.recording.entity import Entity, counted
+from sailviz.recording.framing import FRAME, HEAD, framing
+from sailviz.recording.probe import probe
 from sailviz.recording.sinks import Memory
 
-MAGIC = b"RRF2"
-NEWEST = (0, 41)  # rerun whose files are known here
-FRAME = 16  # bytes of a message's head: kind and length of what follows, both 64-bit little-endian
 PICTURE = ("world", "sail", "plots", "phase", "about", "log", "arrival", "histogram")  # what is there for the eye
+EMPTY = "holds no recording"
 FilePath = str | os.PathLike[str]
 TERMINAL = 110  # characters in a line
 TOLD = 12  # entities of a recording by others that are described on a terminal
 
 
 def read(source: FilePath | bytes | BinaryIO | Memory | Recording) -> Recording:
-    """Open a recording. Cheap: columns are read when they are asked for.
+    """Open a recording: its checksum is looked at, columns are read when they are asked for.
 
     source : a path, the bytes of a file, an open binary file, a Memory that `record` has filled, or a Recording.
-    A file that was cut off is read as far as its last whole message (`complete` is then False).
-    Raises RecordingError, in one sentence, for what is not a recording or was written by a newer rerun.
+    A file that was cut off is read as far as its last whole message (`complete` is then False). A file without a
+    checksum (by others, older, or cut off) is first read in a process of its own, which damage may end.
+    Raises RecordingError, in one sentence, for what is damaged, not a recording, or was written by a newer rerun.
     """
     if isinstance(source, Recording):
         return source
@@ -53,9 +56,14 @@ def read(source: FilePath | bytes | BinaryIO | Memory | Recording) -> Recording:
 
 def kept(content: bytes) -> tempfile._TemporaryFileWrapper[bytes]:
     """Bytes in a temporary file, which is there as long as it is referred to."""
-    file = tempfile.NamedTemporaryFile(suffix=".rrd")  # noqa: SIM115
-    file.write(content)
-    file.flush()
+    try:
+        file = tempfile.NamedTemporaryFile(suffix=".rrd")  # noqa: SIM115
+        file.write(content)
+        file.flush()
+    except OSError as error:
+        raise RecordingError(
+            f"cannot keep {len(content):,} bytes in {tempfile.gettempdir()}: {reason(error)}"
+        ) from None
     return file
 
 
@@ -65,14 +73,17 @@ class Recording(Mapping[str, Entity]):
     `recording["/state"]["position_m"]` is (n, 3) float64, as it was in the run, bit for bit.
     """
 
-    def __init__(self, file: Path | tempfile._TemporaryFileWrapper[bytes], label: str = ""):
-        """file : a path, or a temporary file that lives as long as the Recording. label : its name in words."""
+    def __init__(self, file: Path | tempfile._TemporaryFileWrapper[bytes], label: str = "", trusted: bool = False):
+        """file : a path, or a temporary file that lives as long as the Recording. label : its name in words.
+        trusted : it is whole, or this process may end if it is not."""
         self._file = file
         self.path = file if isinstance(file, Path) else Path(file.name)
-        self._label = label or str(self.path)
+        self.label = label or str(self.path)
         self._whole: tempfile._TemporaryFileWrapper[bytes] | None = None  # the whole messages of one that was cut off
         self._tables: dict[str, Entity] = {}
-        check_head(self.path, self._label)
+        self._frames = framing(self.path, self.label)
+        self.sums = checksums.sums_of(self.path, self._frames)
+        self._check_whole(trusted)
         self._reader = self._open()
 
     def __getitem__(self, entity: str) -> Entity:
@@ -80,9 +91,9 @@ class Recording(Mapping[str, Entity]):
         if name not in self.entities:
             near = difflib.get_close_matches(name, self.entities, 1, 0.4)
             hint = f"; did you mean {near[0]}?" if near else ""
-            raise KeyError(f"{self._label} has no entity {name}{hint}")
+            raise KeyError(f"{self.label} has no entity {name}{hint}")
         if name not in self._tables:
-            self._tables[name] = Entity(name, list(self.chunks(name)))
+            self._tables[name] = self.fresh(name)
         return self._tables[name]
 
     def __contains__(self, entity: object) -> bool:
@@ -101,7 +112,7 @@ class Recording(Mapping[str, Entity]):
         rows, ours = self._rows(), [name for name in self.entities if self._is_truth(name)]
         told = ours or list(self.entities)[:TOLD]
         width = max((len(name) for name in told), default=0)
-        lines = [f"<Recording {self._label}: {len(self.entities)} entities{'' if self.complete else ', not complete'}>"]
+        lines = [f"<Recording {self.label}: {len(self.entities)} entities{'' if self.complete else ', not complete'}>"]
         for name in told:
             columns = f"{counted(rows.get(name, 0))}: {self.head(name).described()}"
             whole = columns.replace(" ", "\0").replace(",\0", ", ")  # fold between columns only
@@ -185,6 +196,21 @@ class Recording(Mapping[str, Entity]):
         stream = self._stream()
         yield from stream.filter(content=entity) if entity else stream
 
+    def fresh(self, entity: str) -> Entity:
+        """An entity read anew, not kept."""
+        return Entity(entity, list(self.chunks(entity)))
+
+    def check_contents(self) -> None:
+        """Raise RecordingError, naming the entities, where columns do not have the checksums that were written with
+        them; nothing where there are none."""
+        if self.sums is not None:
+            checksums.check_contents(self, self.sums)
+
+    @property
+    def sealed(self) -> bool:
+        """Whether the bytes of the file were found to be those that were written."""
+        return self.sums is not None and self.sums.of_this_file and not self._frames.cut
+
     def head(self, entity: str) -> Entity:
         """An entity with the first of its rows only: enough to know its columns."""
         found: list[Chunk] = []
@@ -220,28 +246,38 @@ class Recording(Mapping[str, Entity]):
     @cached_property
     def _store(self) -> LazyStore | None:
         """The file's index, None for a file that was cut off."""
-        return None if self._whole else self._reader.store()
+        return self._reader.store() if self._frames.indexed else None
 
     def _stream(self) -> LazyChunkStream:
         return self._reader.stream() if self._store is None else self._store.stream()
 
+    def _check_whole(self, trusted: bool) -> None:
+        """Raise RecordingError for a file that is damaged, or holds nothing; keep the whole messages of one that was
+        cut off."""
+        if not self._frames.messages:
+            early = self._frames.cut and self._frames.size >= HEAD + FRAME
+            raise RecordingError(f"{self.label} {'was cut off before anything was recorded' if early else EMPTY}")
+        if self._frames.cut:
+            try:
+                self._whole = kept(self.path.read_bytes()[: self._frames.whole])
+            except OSError as error:
+                raise RecordingError(f"cannot read {self.label}: {reason(error)}") from None
+        if self.sums is not None and self.sealed:
+            checksums.check_bytes(self.path, self.sums, self.label)
+        elif not trusted:
+            probe(Path(self._whole.name) if self._whole else self.path, self.label)
+
     def _open(self) -> RrdReader:
         try:
-            reader = open_quietly(self.path)
+            reader = open_quietly(Path(self._whole.name) if self._whole else self.path)
             if not reader.recordings():
-                raise RecordingError(f"{self._label} holds no recording")
-            reader.store()
-            return reader
-        except (RuntimeError, ValueError):
-            pass
-        self._whole = kept(self.path.read_bytes()[: whole_messages(self.path)])
-        try:
-            reader = open_quietly(Path(self._whole.name))
-            if reader.recordings():
-                return reader
+                raise RecordingError(f"{self.label} {EMPTY}")
+            if self._frames.indexed:
+                reader.store()
         except (RuntimeError, ValueError) as error:
-            raise RecordingError(f"{self._label} cannot be read: {str(error).splitlines()[0]}") from None
-        raise RecordingError(f"{self._label} was cut off before anything was recorded")
+            words = (str(error).splitlines() or [""])[0]
+            raise RecordingError(f"{self.label} is damaged and cannot be read: {words}") from None
+        return reader
 
 
 @dataclass(frozen=True)
@@ -259,35 +295,3 @@ def open_quietly(path: Path) -> RrdReader:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return RrdReader(str(path))
-
-
-def check_head(path: Path, label: str) -> None:
-    """Raise RecordingError for what cannot be a recording, or one of a newer rerun."""
-    try:
-        with open(path, "rb") as file:
-            head = file.read(12)
-    except OSError as error:
-        raise RecordingError(f"cannot read {label}: {(error.strerror or str(error)).lower()}") from None
-    if not head:
-        raise RecordingError(f"{label} is empty")
-    if head[:4] != MAGIC:
-        raise RecordingError(f"{label} is not a Rerun recording")
-    if len(head) < 12:
-        raise RecordingError(f"{label} was cut off before anything was recorded")
-    if (head[4], head[5]) > NEWEST:
-        raise RecordingError(
-            f"{label} was written by Rerun {head[4]}.{head[5]}; this sailviz reads files up to {NEWEST[0]}.{NEWEST[1]}"
-        )
-
-
-def whole_messages(path: Path) -> int:
-    """How many bytes of a file that was cut off are whole messages."""
-    size, end = path.stat().st_size, 12
-    with open(path, "rb") as file:
-        while end + FRAME <= size:
-            file.seek(end + 8)
-            length = int.from_bytes(file.read(8), "little")
-            if end + FRAME + length > size:
-                break
-            end += FRAME + length
-    return end

@@ -16,7 +16,9 @@ from urllib.parse import quote
 import rerun as rr
 
 from sailviz.errors import RecordingError
+from sailviz.files import Output
 from sailviz.recording.addresses import check_answer
+from sailviz.recording.drain import Drain, drain_into
 from sailviz.recording.web_page import serve_page
 
 STDOUT = "-"
@@ -57,50 +59,11 @@ WEB = Web()
 Sink = str | os.PathLike[str] | Viewer | Web | Connect | Memory  # as a user gives it
 
 
-@dataclass(frozen=True)
-class File:
-    """A file under its final name and under the name it has while it grows."""
-
-    path: Path
-    part: Path
-
-    @staticmethod
-    def reserve(path: str | os.PathLike[str]) -> File:
-        """Claim a path: the growing file is made at once, so that what cannot be written fails at once."""
-        final = Path(path)
-        if final.is_dir():
-            raise RecordingError(f"cannot write the recording {final}: it is a directory")
-        if not final.parent.is_dir():
-            raise RecordingError(f"cannot write the recording {final}: there is no directory {final.parent}")
-        part = final.with_name(f".{final.name}.{os.getpid()}.part")
-        try:
-            part.touch()
-        except OSError as error:
-            raise RecordingError(f"cannot write the recording {final}: {reason(error)}") from None
-        return File(final, part)
-
-    def publish(self) -> None:
-        """Give the file its name."""
-        try:
-            os.replace(self.part, self.path)
-        except OSError as error:
-            raise RecordingError(f"cannot write the recording {self.path}: {reason(error)}") from None
-
-    def discard(self) -> None:
-        """Leave nothing of it."""
-        self.part.unlink(missing_ok=True)
-
-
-Opened = File | Viewer | Web | Connect | Memory | str
-
-
-def reason(error: OSError) -> str:
-    """Why the system refused, in its words."""
-    return (error.strerror or str(error)).lower()
+Opened = Output | Viewer | Web | Connect | Memory | str
 
 
 def resolve(sinks: Sequence[Sink]) -> list[Opened]:
-    """Sinks as a user gives them -> File, Viewer, Web, Connect, Memory or STDOUT. RecordingError for anything else."""
+    """Sinks as a user gives them -> Output, Viewer, Web, Connect, Memory or STDOUT. RecordingError for others."""
     wanted = [wish(sink) for sink in sinks]
     check_together(sinks, wanted)
     for sink in wanted:
@@ -109,7 +72,7 @@ def resolve(sinks: Sequence[Sink]) -> list[Opened]:
     resolved: list[Opened] = []
     try:
         for sink in wanted:
-            resolved.append(File.reserve(sink) if isinstance(sink, Path) else sink)
+            resolved.append(Output.reserve(sink, "recording") if isinstance(sink, Path) else sink)
     except RecordingError:
         discard(resolved)
         raise
@@ -144,52 +107,83 @@ def check_together(sinks: Sequence[Sink], wanted: Sequence[Wanted]) -> None:
 def discard(sinks: Sequence[Opened]) -> None:
     """Leave nothing of a recording that never began."""
     for sink in sinks:
-        if isinstance(sink, File):
+        if isinstance(sink, Output):
             sink.discard()
 
 
-Attached = rr.MemoryRecording | rr.GrpcServerSink | None
+@dataclass
+class Attached:
+    """What a stream was attached to: the pipes that carry its bytes on, and the browser's server. `memory` and
+    `direct` : where there are no such pipes, what Rerun keeps or writes by itself."""
+
+    drains: list[Drain] = field(default_factory=list)
+    server: rr.GrpcServerSink | None = None
+    memory: rr.MemoryRecording | None = None
+    direct: list[Output] = field(default_factory=list)
 
 
 def attach(stream: rr.RecordingStream, sinks: Sequence[Opened]) -> Attached:
-    """Point a stream at its sinks -> what is needed later: the memory recording, or the data server."""
-    if list(sinks) == [STDOUT]:
-        if sys.stdout.isatty():
-            raise RecordingError(
-                "a recording on standard output must be piped, e.g. `| rerun -`, not shown on a terminal"
-            )
-        stream.stdout()
-        return None
-    if isinstance(sinks[0], Memory):
-        return stream.memory_recording()
+    """Point a stream at its sinks. RecordingError where one cannot be opened."""
+    if list(sinks) == [STDOUT] and sys.stdout.isatty():
+        raise RecordingError("a recording on standard output must be piped, e.g. `| rerun -`, not shown on a terminal")
+    attached = Attached()
     try:
-        return open_sinks(stream, sinks)
-    except (ValueError, RuntimeError) as error:
+        open_sinks(stream, sinks, attached)
+    except (ValueError, RuntimeError, OSError) as error:
+        for drain in attached.drains:
+            drain.release()
         raise RecordingError(f"cannot open the recording's sink: {str(error).splitlines()[0]}") from None
+    return attached
 
 
-def open_sinks(stream: rr.RecordingStream, sinks: Sequence[Opened]) -> rr.GrpcServerSink | None:
-    """Files, viewers and a browser's server, all at once -> the server, None without one."""
+def drain_of(sink: Opened) -> Drain | None:
+    """The pipe towards a file, standard output or memory; None for a viewer, and where there are no such pipes."""
+    try:
+        if isinstance(sink, Output):
+            return drain_into(os.open(sink.part, os.O_WRONLY), str(sink.path))
+        if isinstance(sink, Memory):
+            content = bytearray()
+            return Drain(content.extend, "memory", lambda: setattr(sink, "bytes", bytes(content)))
+        if sink == STDOUT:
+            sys.stdout.flush()
+            return drain_into(os.dup(sys.stdout.fileno()), "to standard output")
+    except OSError:
+        return None
+    return None
+
+
+def open_sinks(stream: rr.RecordingStream, sinks: Sequence[Opened], attached: Attached) -> None:
+    """Files, viewers and a browser's server, all at once."""
     targets: list[rr.FileSink | rr.GrpcSink | rr.GrpcServerSink] = []
-    server: rr.GrpcServerSink | None = None
     for sink in sinks:
-        if isinstance(sink, File):
+        drain = drain_of(sink)
+        if drain is not None:
+            attached.drains.append(drain)
+            targets.append(rr.FileSink(drain.path))
+        elif isinstance(sink, Output):
+            attached.direct.append(sink)
             targets.append(rr.FileSink(sink.part))
+        elif isinstance(sink, Memory):
+            attached.memory = stream.memory_recording()
+            return
+        elif sink == STDOUT:
+            stream.stdout()
+            return
         elif isinstance(sink, Connect):
             targets.append(rr.GrpcSink(sink.url))
         elif isinstance(sink, Viewer):
             rr.spawn(port=sink.port, connect=False, hide_welcome_screen=True, executable_path=viewer_binary())
             targets.append(rr.GrpcSink(f"rerun+http://127.0.0.1:{sink.port}/proxy"))
         elif isinstance(sink, Web):
-            server = rr.GrpcServerSink("127.0.0.1", sink.data_port)
-            targets.append(server)
+            attached.server = rr.GrpcServerSink("127.0.0.1", sink.data_port)
+            targets.append(attached.server)
     stream.set_sinks(*targets)
     for sink in sinks:
-        if isinstance(sink, Web) and server is not None:
+        if isinstance(sink, Web) and attached.server is not None:
             serve_page(viewer_binary(), sink.port)
             if sink.open_browser:
-                webbrowser.open(web_address(sink, server))  # rerun's own address would open in the light theme
-    return server
+                # rerun's own address would open in the light theme
+                webbrowser.open(web_address(sink, attached.server))
 
 
 def viewer_binary() -> str:

@@ -19,6 +19,7 @@ from rerun.error_utils import catch_and_log_exceptions
 
 from sailviz.errors import RecordingError
 from sailviz.recording import timelines
+from sailviz.recording.drain import Drain
 from sailviz.recording.growing import GrowingRecording, why
 from sailviz.recording.sinks import Sink, discard, resolve
 from sailviz.run.arrays import Run
@@ -37,6 +38,7 @@ class Recorded:
     seconds: float  # of wall time inside the recorder
     url: str = ""
     stream: rr.RecordingStream | None = field(default=None, repr=False, compare=False)  # which serves the browser
+    drains: tuple[Drain, ...] = field(default=(), repr=False, compare=False)  # what then still goes to files
 
     def serve(self) -> None:
         """Keep a recording for the browser alive until Ctrl-C; returns at once for every other sink."""
@@ -48,6 +50,8 @@ class Recorded:
         except KeyboardInterrupt:
             if self.stream is not None:
                 self.stream.disconnect()
+            for drain in self.drains:
+                drain.close()
 
 
 def record(run: Run | Iterable[Run], sink: Sink, *more_sinks: Sink) -> Recorded:
@@ -151,12 +155,13 @@ class Recorder:
             seconds=self._seconds,
             url=growing.url,
             stream=growing.stream,
+            drains=growing.drains,
         )
         return self.recorded
 
     def _abandon(self) -> None:
         if self._growing is not None:
-            self._growing.stream.disconnect()
+            self._growing.abandon()
         discard(self._sinks)
 
 

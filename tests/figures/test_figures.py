@@ -55,7 +55,7 @@ def test_wrong_requests_are_refused_in_a_sentence(tmp_path, monkeypatch):
         figures.draw("escape", tmp_path / "a.docx")
     with pytest.raises(figures.FigureError, match="dark and light"):
         figures.draw("thesis-3.5", tmp_path / "a.png", style="neon")
-    with pytest.raises(figures.FigureError, match="no such file"):
+    with pytest.raises(figures.FigureError, match="there is no directory"):
         figures.draw("thesis-3.5", tmp_path / "nowhere" / "a.png")
     monkeypatch.setitem(sys.modules, "sailviz.figures.page", None)
     monkeypatch.delattr(figures, "page", raising=False)

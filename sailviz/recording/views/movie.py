@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sailviz import files
 from sailviz.errors import RecordingError
 from sailviz.recording.reader import FilePath
 from sailviz.recording.views.instant import Moment, fraction_of
@@ -63,13 +62,14 @@ def make_movie(
     began = time.monotonic()
     encode = check_format(out)
     count = frames_of(seconds, fps)
+    files.check(out, "movie")
     first, last = fraction_of(path, start), fraction_of(path, end)
     if view is not None:
         size, panels = (size[0] + FRAME[0], size[1] + FRAME[1]), False
     errors: dict[str, None] = {}
     warnings: dict[str, None] = {}
     frames: list[Path] = []
-    with written_whole(out) as part, scratch() as folder:
+    with files.writing(out, "movie") as part, scratch() as folder:
         with Studio(path, size=size, panels=panels) as studio:
             for number, at in enumerate(np.linspace(first, last, count)):
                 agree = AGREE if number else FIRST_AGREE
@@ -79,8 +79,7 @@ def make_movie(
                 warnings |= dict.fromkeys(report.warnings)
                 if progress:
                     progress((number + 1) / (count + 1))  # the encoding counts as a frame
-        with writing(Path(out)):
-            encode(frames, part, fps)
+        encode(frames, part, fps)
         if progress:
             progress(1.0)
     return MovieReport(Path(out), report.size, count, tuple(errors), tuple(warnings), time.monotonic() - began)
@@ -171,7 +170,7 @@ def mp4(frames: list[Path], out: Path, fps: float) -> None:
         fps=fps,
         codec="libx264",
         macro_block_size=2,
-        output_params=["-crf", "20", "-movflags", "+faststart"],
+        output_params=["-crf", "20", "-movflags", "+faststart", "-f", "mp4"],  # the part's name does not say so
     )
     writer.send(None)
     try:
@@ -189,31 +188,3 @@ def image(path: Path) -> Image.Image:
 
     with Image.open(path) as opened:
         return opened.convert("RGB")
-
-
-@contextmanager
-def written_whole(name: FilePath) -> Iterator[Path]:
-    """A temporary name beside a file; the file appears under its own when all went well, and not at all otherwise."""
-    path = Path(name)
-    if path.is_dir():
-        raise RecordingError(f"cannot write {path}: it is a directory")
-    if not path.parent.is_dir():
-        raise RecordingError(f"cannot write {path}: there is no directory {path.parent}")
-    part = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
-    try:
-        with writing(path):
-            part.touch()
-        yield part
-        with writing(path):
-            os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
-
-
-@contextmanager
-def writing(path: Path) -> Iterator[None]:
-    """Let what goes wrong with a file be told in one sentence: RecordingError."""
-    try:
-        yield
-    except OSError as error:
-        raise RecordingError(f"cannot write {path}: {(error.strerror or str(error)).lower()}") from None

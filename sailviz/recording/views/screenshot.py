@@ -17,10 +17,11 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import numpy as np
 
+from sailviz import files
 from sailviz.errors import RecordingError
 from sailviz.recording.children import Child
 from sailviz.recording.reader import FilePath, read
-from sailviz.recording.sinks import reason, viewer_binary
+from sailviz.recording.sinks import viewer_binary
 from sailviz.recording.views.scratch import scratch
 from sailviz.recording.web_page import free_port
 
@@ -159,7 +160,7 @@ class Studio:
         try:
             Path(png).write_bytes(image)
         except OSError as error:
-            raise RecordingError(f"cannot write the picture {png}: {reason(error)}") from None
+            raise RecordingError(f"cannot write the picture {png}: {files.reason(error)}") from None
         state = self._asked("for its state", self._client.get_state)
         reports = [(v.name, r) for v in state.views for r in v.reports]
         errors = tuple(f"{name}: {r.summary}" for name, r in reports if r.severity == "error")

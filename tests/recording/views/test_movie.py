@@ -8,7 +8,7 @@ from PIL import Image, ImageSequence
 
 from sailviz.errors import RecordingError
 from sailviz.recording import make_movie, record
-from sailviz.recording.views.movie import gif, mp4, webp, written_whole
+from sailviz.recording.views.movie import gif, mp4, webp
 from sailviz.recording.views.screenshot import has_vulkan
 
 needs_vulkan = pytest.mark.skipif(
@@ -65,14 +65,9 @@ def test_mp4_without_its_encoder_says_what_to_install(tmp_path, monkeypatch):
         make_movie(tmp_path / "none.rrd", tmp_path / "film.mp4")
 
 
-def test_a_file_appears_whole_or_not_at_all(tmp_path):
-    (tmp_path / "old.gif").write_text("old")
-    with pytest.raises(ZeroDivisionError), written_whole(tmp_path / "old.gif") as part:
-        part.write_text(f"half {1 / 0}")
-    assert (tmp_path / "old.gif").read_text() == "old"
-    assert [path.name for path in tmp_path.iterdir()] == ["old.gif"]
-    with pytest.raises(RecordingError, match="there is no directory"), written_whole(tmp_path / "nowhere" / "a.gif"):
-        pass
+def test_a_movie_for_a_folder_that_is_not_there_is_refused_before_a_picture_is_taken(tmp_path):
+    with pytest.raises(RecordingError, match="there is no directory"):
+        make_movie(tmp_path / "none.rrd", tmp_path / "nowhere" / "a.gif")
 
 
 @needs_vulkan

@@ -1,0 +1,71 @@
+"""Reading a whole file in a process of its own: what is damaged may end the process that reads it.
+
+Rerun and Arrow are written for files as they were written; a flipped bit can end the process from within. Files without
+a checksum of their own (by others, or cut off) are therefore read once where that harms nobody.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from sailviz.errors import RecordingError
+
+PATIENCE, RATE = 120.0, 2e6  # s, and bytes in a s on a slow machine, after which the reading counts as hanging
+UNREADABLE = 3
+
+
+def probe(path: Path, label: str) -> None:
+    """Raise RecordingError, in one sentence, for a file that cannot be read from end to end."""
+    patience = PATIENCE + path.stat().st_size / RATE
+    command = [sys.executable, "-m", "sailviz.recording.probe", str(path)]
+    environment = dict(os.environ, RUST_LOG="off", RUST_BACKTRACE="0")
+    environment["PYTHONPATH"] = os.pathsep.join(filter(None, [str(Path(__file__).parents[2]), *sys.path]))
+    try:
+        done = subprocess.run(
+            command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=patience, check=False
+        )
+    except subprocess.TimeoutExpired:
+        raise RecordingError(f"{label} is damaged and cannot be read: reading it does not end") from None
+    except OSError:
+        return  # no process can be started here: better to try than to refuse
+    if done.returncode == UNREADABLE:
+        raise RecordingError(f"{label} cannot be read: it is damaged ({done.stdout.decode(errors='replace').strip()})")
+    if done.returncode:
+        raise RecordingError(f"{label} cannot be read: it is damaged (its contents do not decode)")
+
+
+def read_through(path: Path) -> None:
+    """Read all that a file holds, as the rest of sailviz does. Raises whatever that raises."""
+    from sailviz.recording.comparison.tables import epoch_of, truth_of, views_of
+    from sailviz.recording.reader import Recording
+
+    recording = Recording(path, trusted=True)
+    for chunk in recording.chunks():
+        chunk.to_record_batch().validate(full=True)
+    for layout in recording.blueprints():
+        for chunk in layout:
+            chunk.to_record_batch().validate(full=True)
+    for name in recording.entities:
+        entity = recording.fresh(name)
+        for column in entity if recording.contract else ():
+            entity.arrow(column).to_pylist() if name == "/scene" else entity[column]
+    views_of(recording), epoch_of(recording), truth_of(recording)
+    _ = recording.events, recording.resolved, recording.versions, recording.complete, recording.application_id
+
+
+def main() -> int:
+    """The process: exit code 0 for a file that can be read, UNREADABLE and a few words for one that cannot."""
+    try:
+        read_through(Path(sys.argv[1]))
+    except BaseException as error:  # a panic of Rust is no Exception
+        words = (str(error).splitlines() or [""])[0]
+        sys.stdout.buffer.write(f"{words or type(error).__name__}"[:160].encode())
+        return UNREADABLE
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,159 @@
+"""Damaged recordings: told in one sentence, never trusted, never the end of the process that reads them."""
+
+import random
+import subprocess
+
+import numpy as np
+import pytest
+import rerun as rr
+
+from sailviz.errors import RecordingError
+from sailviz.recording import Memory, checksums, compare, digest, export, framing, info, read, record
+from sailviz.recording.sinks import viewer_binary
+
+
+@pytest.fixture(scope="module")
+def whole(runs, tmp_path_factory):
+    """A small recording, as bytes, and its path."""
+    path = tmp_path_factory.mktemp("whole") / "run.rrd"
+    record(runs.displaced(rows=20), path)
+    return path.read_bytes(), path
+
+
+def flipped(content, bit):
+    """The content with one bit turned."""
+    changed = bytearray(content)
+    changed[bit // 8] ^= 1 << (bit % 8)
+    return bytes(changed)
+
+
+def tried(verb, path):
+    """(what a verb finds, "") or, where it refuses, (None, its sentence)."""
+    try:
+        return verb(path), ""
+    except RecordingError as error:
+        return None, str(error)
+
+
+def test_a_bit_that_flips_anywhere_is_found_or_changes_nothing(whole, tmp_path):
+    """Whichever bit it is: one sentence, or the same contents."""
+    content, path = whole
+    chance, same = random.Random(20), digest(path)
+    frames = framing.framing(path)
+    sealed = checksums.sums_of(path, frames).start
+    places = [chance.randrange(8 * sealed) for _ in range(60)]  # what the checksum covers
+    places += [chance.randrange(8 * sealed, 8 * len(content)) for _ in range(30)]  # the sums, index and tail
+    places += [8 * (message.start + chance.randrange(16)) for message in chance.sample(frames.messages, 15)]
+    for bit in places:
+        (tmp_path / "damaged.rrd").write_bytes(flipped(content, bit))
+        found, sentence = tried(digest, tmp_path / "damaged.rrd")
+        assert "\n" not in sentence, bit
+        assert sentence or bit >= 8 * sealed, bit
+        assert found in (same, None), bit
+
+
+def test_a_file_that_is_cut_anywhere_is_read_as_far_as_it_goes_or_refused(whole, run, tmp_path):
+    content, path = whole
+    position = read(path)["/state"]["position_m"]
+    chance = random.Random(3)
+    for stop in [*(chance.randrange(len(content)) for _ in range(3)), len(content) - 1, len(content) - 33]:
+        (tmp_path / "cut.rrd").write_bytes(content[:stop])
+        recording, sentence = tried(read, tmp_path / "cut.rrd")
+        assert "\n" not in sentence
+        assert recording is None or not recording.complete
+        if recording is not None and "/state" in recording:
+            assert np.array_equal(recording["/state"]["position_m"], position)
+
+
+@pytest.mark.parametrize("verb", [read, digest, info, export, compare])
+def test_every_verb_refuses_a_damaged_recording_in_one_sentence(verb, whole, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    content, path = whole
+    (tmp_path / "damaged.rrd").write_bytes(flipped(content, 4 * len(content)))
+    more = {export: ("a.csv",), compare: (path,)}.get(verb, ())
+    with pytest.raises(RecordingError, match="damaged") as error:
+        verb("damaged.rrd", *more)
+    assert "\n" not in str(error.value)
+    assert [file.name for file in tmp_path.iterdir()] == ["damaged.rrd"]
+
+
+def test_the_contents_of_every_entity_have_the_checksums_written_with_them(any_run, runs, tmp_path):
+    record(runs.in_blocks(any_run, 70), tmp_path / "run.rrd")
+    recording = read(tmp_path / "run.rrd")
+    assert recording.sealed
+    assert {"/state", "/attitude", "/thrust", "/elements", "/scene"} <= set(recording.sums.entities)
+    recording.check_contents()
+
+
+def test_a_recording_in_memory_has_the_checksums_of_a_file(run):
+    memory = Memory()
+    record(run, memory)
+    recording = read(memory)
+    assert recording.sealed
+    recording.check_contents()
+
+
+def rewritten(path):
+    """The recording as Rerun's own tool puts it together anew: other bytes, the same contents."""
+    out = path.with_name(f"rewritten-{path.name}")
+    subprocess.run([viewer_binary(), "rrd", "optimize", path, "-o", out], check=True, capture_output=True)
+    return out
+
+
+def test_a_recording_that_another_program_rewrote_is_held_to_its_contents(run, tmp_path):
+    record(run, tmp_path / "run.rrd")
+    recording = read(rewritten(tmp_path / "run.rrd"))
+    assert recording.sums is not None
+    assert not recording.sealed
+    recording.check_contents()
+    assert compare(recording, tmp_path / "run.rrd").equal
+
+
+def test_contents_that_are_not_those_of_the_checksum_are_named(run, tmp_path, monkeypatch):
+    result = checksums.ContentSums.result
+    with monkeypatch.context() as patched:
+        patched.setattr(checksums.ContentSums, "result", lambda self: result(self) | {"/state": "0" * 64})
+        record(run, tmp_path / "run.rrd")
+    path = rewritten(tmp_path / "run.rrd")
+    for verb in (compare, export):
+        with pytest.raises(RecordingError, match="/state does not have the checksum"):
+            verb(path, {compare: run, export: tmp_path / "a.csv"}[verb])
+    with pytest.raises(RecordingError, match="/state does not have the checksum"):
+        read(tmp_path / "run.rrd").check_contents()
+
+
+def test_checksums_do_not_change_the_digest(run, tmp_path, monkeypatch):
+    record(run, tmp_path / "with.rrd")
+    monkeypatch.setattr(rr, "RecordingStream", without_sums(rr.RecordingStream))
+    monkeypatch.setattr("sailviz.recording.growing.check_whole", lambda *_, **how: None)
+    record(run, tmp_path / "without.rrd")
+    assert read(tmp_path / "with.rrd").sums is not None
+    assert read(tmp_path / "without.rrd").sums is None
+    assert digest(tmp_path / "with.rrd") == digest(tmp_path / "without.rrd")
+    assert compare(tmp_path / "with.rrd", tmp_path / "without.rrd").equal
+
+
+def without_sums(stream):
+    """A stream as it was before there were checksums."""
+
+    class Older(stream):
+        def log(self, path, *what, **how):
+            if path != checksums.ENTITY:
+                super().log(path, *what, **how)
+
+    return Older
+
+
+def test_damage_to_a_recording_without_checksums_does_not_end_this_process(tmp_path):
+    """One of these bits ends the process that hands the file to Rerun."""
+    stream = rr.RecordingStream("somebody_else", recording_id="x", send_properties=False)
+    stream.save(str(tmp_path / "other.rrd"))
+    stream.send_columns("a/b", [rr.TimeColumn("frame", sequence=range(5))], rr.Scalars.columns(scalars=np.arange(5.0)))
+    stream.disconnect()
+    content = (tmp_path / "other.rrd").read_bytes()
+    chance, sentences = random.Random(1), []
+    for _ in range(6):
+        (tmp_path / "damaged.rrd").write_bytes(flipped(content, chance.randrange(8 * 200, 4 * len(content))))
+        sentences.append(tried(digest, tmp_path / "damaged.rrd")[1])
+    assert any(sentences)
+    assert not any("\n" in sentence for sentence in sentences)

@@ -87,5 +87,14 @@ class RecordingError(SailvizError):
     """A recording that cannot be written or read, in one sentence."""
 
 
+class DamagedError(RecordingError):
+    """A recording whose bytes are not those that were written. entities : those in which the damage lies, as far as
+    that can be told."""
+
+    def __init__(self, sentence: str, entities: Sequence[str] = ()):
+        self.entities = tuple(entities)
+        super().__init__(sentence)
+
+
 class OutputError(RecordingError):
     """A file that cannot be written, in one sentence; what stood under its name before is untouched."""

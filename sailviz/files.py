@@ -72,7 +72,8 @@ class Output:
             else:
                 self._pour()
         except OSError as error:
-            raise OutputError(f"cannot write the {self.what} {self.path}: {reason(error, self.part)}") from None
+            why = reason(error, self.part if self.regular else None)
+            raise OutputError(f"cannot write the {self.what} {self.path}: {why}") from None
         finally:
             self.discard()
 
@@ -134,10 +135,11 @@ def write_text(path: str | os.PathLike[str], text: str, what: str = "file") -> N
 def reason(error: OSError, part: Path | None = None) -> str:
     """Why a file operation failed, in words; of a full disk also how much is there."""
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        if part is None:
+            return "no space is left"
         words = "no space is left on the disk"
         try:
-            free = shutil.disk_usage(part.parent if part is not None else tempfile.gettempdir()).free
-            size = part.stat().st_size if part is not None and part.exists() else 0
+            free, size = shutil.disk_usage(part.parent).free, part.stat().st_size if part.exists() else 0
         except OSError:
             return words
         return f"{words}: {size:,} bytes are written, {free:,} more are free, and that is not enough"

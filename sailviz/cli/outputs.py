@@ -36,9 +36,10 @@ def folder_at(given: str | os.PathLike[str], what: str) -> Path:
 
 
 def file_or_folder(given: str | os.PathLike[str], name: str, what: str, endings: tuple[str, ...] = ()) -> Path:
-    """The file that -o means: itself if it has an ending, else `name` in the folder of that name."""
+    """The file that -o means: itself if it has an ending or is a device or a pipe, else `name` in the folder of that
+    name."""
     path = _named(given, what)
-    if path.suffix and not path.is_dir():
+    if not path.is_dir() and (path.suffix or (path.exists() and not path.is_file())):
         return file_at(path, what, endings)
     folder = folder_at(path, what)
     return file_at(folder / name, what, endings) if folder.is_dir() else folder / name

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from sailviz.recording.sinks import Viewer as Viewer
     from sailviz.recording.sinks import Web as Web
     from sailviz.recording.views.info import info as info
+    from sailviz.recording.views.info import verify as verify
     from sailviz.recording.views.movie import MovieReport as MovieReport
     from sailviz.recording.views.movie import make_movie as make_movie
     from sailviz.recording.views.screenshot import PictureReport as PictureReport
@@ -47,6 +48,7 @@ _HOMES = {
     "Comparison": "comparison.result",
     "export": "exports",
     "info": "views.info",
+    "verify": "views.info",
     "picture": "views.screenshot",
     "PictureReport": "views.screenshot",
     "make_movie": "views.movie",

@@ -6,7 +6,6 @@ leave a flush or the end of the stream waiting for ever. Behind a pipe it never 
 
 from __future__ import annotations
 
-import hashlib
 import os
 import select
 import threading
@@ -14,6 +13,8 @@ import time
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+
+from sailviz.recording.checksums import RunningSums
 
 PIECE = 1 << 18  # bytes carried on at once
 WIDE = 1 << 20  # bytes that the pipe holds, where the system lets us say
@@ -23,10 +24,16 @@ STEP = 2e-4  # s between two looks whether the pipe is empty
 class Drain:
     """A pipe that is emptied into `write` by a thread. `path` is what Rerun writes to; `error` what went wrong."""
 
-    def __init__(self, write: Callable[[bytes], object], word: str, done: Callable[[], object] = lambda: None):
+    def __init__(
+        self,
+        write: Callable[[bytes], object],
+        word: str,
+        done: Callable[[], object] = lambda: None,
+        part: Path | None = None,
+    ):
         """write : takes the next bytes, all of them, or raises OSError. word : where they go, for messages. done :
-        called after the last. OSError where there are no such pipes."""
-        self._write, self.word, self._done = write, word, done
+        called after the last. part : the file they go to, if it is one. OSError where there are no such pipes."""
+        self._write, self.word, self._done, self.part = write, word, done, part
         self._source, self._held = os.pipe()  # our own hand on the near end keeps it open until Rerun has it
         self.path = Path(f"/dev/fd/{self._held}")
         try:
@@ -37,17 +44,12 @@ class Drain:
             os.close(self._held)
             raise
         _widen(self._held)
-        self.count = 0  # bytes carried on
         self.error: OSError | None = None
-        self._sum = hashlib.sha256()
+        self.running = RunningSums()  # of all that was carried on
+        self.offered = 0  # bytes that came from Rerun
         self._busy = False
         self._thread = threading.Thread(target=self._carry, name="recording", daemon=True)
         self._thread.start()
-
-    @property
-    def sha256(self) -> str:
-        """Of all that was carried on."""
-        return self._sum.hexdigest()
 
     def settle(self) -> None:
         """Wait until what Rerun has written has been carried on. OSError, the first there was, where it could not."""
@@ -87,6 +89,7 @@ class Drain:
             self._busy = False
 
     def _take(self, piece: bytes) -> None:
+        self.offered += len(piece)
         if self.error is not None:
             return  # Rerun must not wait for a reader that has given up
         try:
@@ -94,13 +97,12 @@ class Drain:
         except OSError as error:
             self.error = error
             return
-        self._sum.update(piece)
-        self.count += len(piece)
+        self.running.add(piece)
 
 
-def drain_into(handle: int, word: str) -> Drain:
+def drain_into(handle: int, word: str, part: Path | None = None) -> Drain:
     """A drain into an open file, which it closes in the end."""
-    return Drain(_writer(handle), word, partial(os.close, handle))
+    return Drain(_writer(handle), word, partial(os.close, handle), part)
 
 
 def _writer(handle: int) -> Callable[[bytes], None]:

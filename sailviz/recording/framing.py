@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
-from sailviz.errors import RecordingError
+from sailviz.errors import DamagedError, RecordingError
 from sailviz.files import reason, regular
 
 MAGIC, FOOT, FOOT_AT = b"RRF2", b"RRF2FOOT", 20  # where in the last 32 bytes the word lies
@@ -83,9 +83,9 @@ def check_head(file: BinaryIO, label: str) -> None:
         raise damaged(label, 8)
 
 
-def damaged(label: str, at: int) -> RecordingError:
+def damaged(label: str, at: int) -> DamagedError:
     """The sentence for a file whose bytes make no sense from a place on."""
-    return RecordingError(f"{label} is damaged and cannot be read: its bytes make no sense from number {at:,} on")
+    return DamagedError(f"{label} is damaged and cannot be read: its bytes make no sense from number {at:,} on")
 
 
 def _walked(file: BinaryIO, size: int, label: str) -> Framing:

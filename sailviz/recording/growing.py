@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -31,8 +32,6 @@ class GrowingRecording:
         self._setting = setting = first.setting
         self._ended = ""
         self._events: list[Event] = []  # those that lie after the last row seen
-        self._written_events: list[Event] = []
-        self._sums = checksums.ContentSums()
         # the viewer keeps one arrangement of views for each application: each scene needs its own
         application = f"sailviz_{setting.family}_{setting.identity[:8]}"
         self.stream = rr.RecordingStream(application, recording_id=setting.identity, send_properties=False)
@@ -68,7 +67,6 @@ class GrowingRecording:
         for entity, table in contract.tables(block).items():
             if table:
                 self.stream.send_columns(entity, index, contract.columns(entity, table))
-                self._sums.add(entity, table)
         self._add_events(block)
         self._drawing.add(block)
         first = self.last is None
@@ -86,7 +84,7 @@ class GrowingRecording:
         self._write_events(self._events, np.full(len(self._events), self.rows - 1))
         self._drawing.finish(last)
         self._write_scene(complete)
-        self._write_sums(complete)
+        self._write_sums()
         memory = self._attached.memory
         if memory is not None and isinstance(self._sinks[0], Memory):
             self._flush()
@@ -129,27 +127,29 @@ class GrowingRecording:
         try:
             wait()
         except OSError as error:
-            part = next((sink.part for sink in self._sinks if isinstance(sink, Output)), None)
-            words = f"cannot write the recording {drain.word}: {reason(error, part)}{self._needed(drain)}"
+            words = f"cannot write the recording {drain.word}: {reason(error, drain.part)}"
+            if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
+                words += self._needed(drain)
             raise OutputError(words) from None
 
     def _needed(self, drain: Drain) -> str:
         """How much a run of this length takes, in words; "" where that cannot be told yet."""
-        if not self.rows or self.rows >= self._setting.rows:
+        if not self.rows or not drain.offered:
             return ""
-        whole = drain.count * self._setting.rows / self.rows
+        whole = drain.offered * max(self._setting.rows / self.rows, 1.0)
         return f" (all {self._setting.rows:,} rows take about {whole / 1e6:,.3g} MB)"
 
-    def _write_sums(self, complete: bool) -> None:
-        """The last that is logged: what was written so far has these checksums."""
-        scene = contract.scene(self._setting, rows=self.rows, complete=complete, ended=self._ended)
-        sums = self._sums.result() | checksums.event_sum(self._written_events)
-        sums["/scene"] = checksums.sum_of_facts(scene)
+    def _write_sums(self) -> None:
+        """The last that is logged: the checksums of what was written so far."""
         self._flush()
-        of_files = {(drain.count, drain.sha256) for drain in self.drains}
-        of_files |= {checksums.sum_of_file(file.part) for file in self._attached.direct}
-        of_file = of_files.pop() if len(of_files) == 1 else None
-        self.stream.log(checksums.ENTITY, checksums.facts(sums, of_file), static=True)
+        try:
+            written = [drain.running for drain in self.drains]
+            written += [checksums.of_file(file.part) for file in self._attached.direct]
+        except OSError as error:
+            raise OutputError(f"cannot write the recording: {reason(error)}") from None
+        if len({running.sums.tobytes() for running in written}) == 1:  # none for a viewer, nor for files that differ
+            facts = checksums.facts(written[0].sums, written[0].count)
+            self.stream.log(checksums.ENTITY, facts, static=True)
 
     def _add_events(self, block: Run) -> None:
         """Write the events that have a row at or after them by now; keep the others."""
@@ -162,7 +162,6 @@ class GrowingRecording:
     def _write_events(self, events: list[Event], number: np.ndarray) -> None:
         if not events:
             return
-        self._written_events += events
         index = timelines.time_columns(self._setting, number, [event.time for event in events])
         self.stream.send_columns("/events", index, contract.event_columns(events))
         self._drawing.add_events(events, index)

@@ -11,14 +11,14 @@ import subprocess
 import sys
 from pathlib import Path
 
-from sailviz.errors import RecordingError
+from sailviz.errors import DamagedError
 
 PATIENCE, RATE = 120.0, 2e6  # s, and bytes in a s on a slow machine, after which the reading counts as hanging
 UNREADABLE = 3
 
 
 def probe(path: Path, label: str) -> None:
-    """Raise RecordingError, in one sentence, for a file that cannot be read from end to end."""
+    """Raise DamagedError, in one sentence, for a file that cannot be read from end to end."""
     patience = PATIENCE + path.stat().st_size / RATE
     command = [sys.executable, "-m", "sailviz.recording.probe", str(path)]
     environment = dict(os.environ, RUST_LOG="off", RUST_BACKTRACE="0")
@@ -28,13 +28,13 @@ def probe(path: Path, label: str) -> None:
             command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, timeout=patience, check=False
         )
     except subprocess.TimeoutExpired:
-        raise RecordingError(f"{label} is damaged and cannot be read: reading it does not end") from None
+        raise DamagedError(f"{label} is damaged and cannot be read: reading it does not end") from None
     except OSError:
         return  # no process can be started here: better to try than to refuse
     if done.returncode == UNREADABLE:
-        raise RecordingError(f"{label} cannot be read: it is damaged ({done.stdout.decode(errors='replace').strip()})")
+        raise DamagedError(f"{label} cannot be read: it is damaged ({done.stdout.decode(errors='replace').strip()})")
     if done.returncode:
-        raise RecordingError(f"{label} cannot be read: it is damaged (its contents do not decode)")
+        raise DamagedError(f"{label} cannot be read: it is damaged (its contents do not decode)")
 
 
 def read_through(path: Path) -> None:

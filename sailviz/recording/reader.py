@@ -17,7 +17,7 @@ from typing import Any, BinaryIO
 import numpy as np
 from rerun.chunk import Chunk, LazyChunkStream, LazyStore, RrdReader
 
-from sailviz.errors import RecordingError
+from sailviz.errors import DamagedError, RecordingError
 from sailviz.files import reason
 from sailviz.recording import checksums
 from sailviz.recording.entity import Entity, counted
@@ -82,7 +82,7 @@ class Recording(Mapping[str, Entity]):
         self._whole: tempfile._TemporaryFileWrapper[bytes] | None = None  # the whole messages of one that was cut off
         self._tables: dict[str, Entity] = {}
         self._frames = framing(self.path, self.label)
-        self.sums = checksums.sums_of(self.path, self._frames)
+        self._sums = checksums.sums_of(self.path, self._frames)
         self._check_whole(trusted)
         self._reader = self._open()
 
@@ -200,16 +200,10 @@ class Recording(Mapping[str, Entity]):
         """An entity read anew, not kept."""
         return Entity(entity, list(self.chunks(entity)))
 
-    def check_contents(self) -> None:
-        """Raise RecordingError, naming the entities, where columns do not have the checksums that were written with
-        them; nothing where there are none."""
-        if self.sums is not None:
-            checksums.check_contents(self, self.sums)
-
     @property
     def sealed(self) -> bool:
         """Whether the bytes of the file were found to be those that were written."""
-        return self.sums is not None and self.sums.of_this_file and not self._frames.cut
+        return self._sums is not None and self._sums.of_this_file and not self._frames.cut
 
     def head(self, entity: str) -> Entity:
         """An entity with the first of its rows only: enough to know its columns."""
@@ -262,8 +256,8 @@ class Recording(Mapping[str, Entity]):
                 self._whole = kept(self.path.read_bytes()[: self._frames.whole])
             except OSError as error:
                 raise RecordingError(f"cannot read {self.label}: {reason(error)}") from None
-        if self.sums is not None and self.sealed:
-            checksums.check_bytes(self.path, self.sums, self.label)
+        if self._sums is not None and self.sealed:
+            checksums.check(self.path, self._frames, self._sums, self.label)
         elif not trusted:
             probe(Path(self._whole.name) if self._whole else self.path, self.label)
 
@@ -276,7 +270,7 @@ class Recording(Mapping[str, Entity]):
                 reader.store()
         except (RuntimeError, ValueError) as error:
             words = (str(error).splitlines() or [""])[0]
-            raise RecordingError(f"{self.label} is damaged and cannot be read: {words}") from None
+            raise DamagedError(f"{self.label} is damaged and cannot be read: {words}") from None
         return reader
 
 

@@ -140,7 +140,7 @@ def drain_of(sink: Opened) -> Drain | None:
     """The pipe towards a file, standard output or memory; None for a viewer, and where there are no such pipes."""
     try:
         if isinstance(sink, Output):
-            return drain_into(os.open(sink.part, os.O_WRONLY), str(sink.path))
+            return drain_into(os.open(sink.part, os.O_WRONLY), str(sink.path), sink.part)
         if isinstance(sink, Memory):
             content = bytearray()
             return Drain(content.extend, "memory", lambda: setattr(sink, "bytes", bytes(content)))

@@ -2,13 +2,14 @@
 
 import random
 import subprocess
+import zlib
 
 import numpy as np
 import pytest
 import rerun as rr
 
-from sailviz.errors import RecordingError
-from sailviz.recording import Memory, checksums, compare, digest, export, framing, info, read, record
+from sailviz.errors import DamagedError, RecordingError
+from sailviz.recording import Memory, checksums, compare, digest, export, framing, info, messages, read, record, verify
 from sailviz.recording.sinks import viewer_binary
 
 
@@ -77,20 +78,45 @@ def test_every_verb_refuses_a_damaged_recording_in_one_sentence(verb, whole, tmp
     assert [file.name for file in tmp_path.iterdir()] == ["damaged.rrd"]
 
 
-def test_the_contents_of_every_entity_have_the_checksums_written_with_them(any_run, runs, tmp_path):
-    record(runs.in_blocks(any_run, 70), tmp_path / "run.rrd")
-    recording = read(tmp_path / "run.rrd")
-    assert recording.sealed
-    assert {"/state", "/attitude", "/thrust", "/elements", "/scene"} <= set(recording.sums.entities)
-    recording.check_contents()
+def test_a_recording_has_a_checksum_for_each_of_its_messages(any_run, runs, tmp_path):
+    record(runs.in_blocks(any_run, 70), tmp_path / "run.rrd", tmp_path / "twin.rrd")
+    for path in (tmp_path / "run.rrd", tmp_path / "twin.rrd"):
+        frames = framing.framing(path)
+        sums = checksums.sums_of(path, frames)
+        content = path.read_bytes()
+        parts = [content[message.start : message.stop] for message in frames.messages]
+        parts[0] = content[: frames.messages[0].stop]
+        assert sums.sums.tolist() == [zlib.crc32(part) for part in parts[:-1]]
+        assert read(path).sealed
+
+
+def test_the_entities_in_which_damage_lies_are_named(whole, tmp_path):
+    """Wherever it lies: in the truth, the plots or the picture."""
+    content, path = whole
+    for chunk_of in ("/state", "/plots/", "/world/craft"):
+        frames = framing.framing(path)
+        names = [messages.named(path, frames, [message]) for message in frames.messages]
+        place = next(place for place, name in enumerate(names) if name and name[0].startswith(chunk_of))
+        message = frames.messages[place]
+        (tmp_path / "damaged.rrd").write_bytes(flipped(content, 8 * (message.stop - 20)))
+        with pytest.raises(DamagedError, match=f"{names[place][0]} does not have the checksum") as error:
+            read(tmp_path / "damaged.rrd")
+        assert error.value.entities == tuple(names[place])
+        found = verify(tmp_path / "damaged.rrd")
+        assert (found["checksums"], found["damaged"]) == ("damaged", names[place])
+
+
+def test_the_names_of_messages_are_those_that_rerun_reads(whole):
+    _, path = whole
+    frames = framing.framing(path)
+    named = set(messages.named(path, frames, list(frames.messages)))
+    assert set(read(path).entities) <= named
 
 
 def test_a_recording_in_memory_has_the_checksums_of_a_file(run):
     memory = Memory()
     record(run, memory)
-    recording = read(memory)
-    assert recording.sealed
-    recording.check_contents()
+    assert read(memory).sealed
 
 
 def rewritten(path):
@@ -100,26 +126,12 @@ def rewritten(path):
     return out
 
 
-def test_a_recording_that_another_program_rewrote_is_held_to_its_contents(run, tmp_path):
+def test_a_recording_that_another_program_rewrote_says_that_its_checksums_are_of_another_file(run, tmp_path):
     record(run, tmp_path / "run.rrd")
     recording = read(rewritten(tmp_path / "run.rrd"))
-    assert recording.sums is not None
     assert not recording.sealed
-    recording.check_contents()
+    assert info(recording)["checksums"] == "none"
     assert compare(recording, tmp_path / "run.rrd").equal
-
-
-def test_contents_that_are_not_those_of_the_checksum_are_named(run, tmp_path, monkeypatch):
-    result = checksums.ContentSums.result
-    with monkeypatch.context() as patched:
-        patched.setattr(checksums.ContentSums, "result", lambda self: result(self) | {"/state": "0" * 64})
-        record(run, tmp_path / "run.rrd")
-    path = rewritten(tmp_path / "run.rrd")
-    for verb in (compare, export):
-        with pytest.raises(RecordingError, match="/state does not have the checksum"):
-            verb(path, {compare: run, export: tmp_path / "a.csv"}[verb])
-    with pytest.raises(RecordingError, match="/state does not have the checksum"):
-        read(tmp_path / "run.rrd").check_contents()
 
 
 def test_checksums_do_not_change_the_digest(run, tmp_path, monkeypatch):
@@ -127,8 +139,8 @@ def test_checksums_do_not_change_the_digest(run, tmp_path, monkeypatch):
     monkeypatch.setattr(rr, "RecordingStream", without_sums(rr.RecordingStream))
     monkeypatch.setattr("sailviz.recording.growing.check_whole", lambda *_, **how: None)
     record(run, tmp_path / "without.rrd")
-    assert read(tmp_path / "with.rrd").sums is not None
-    assert read(tmp_path / "without.rrd").sums is None
+    assert verify(tmp_path / "with.rrd")["checksums"] == "hold"
+    assert verify(tmp_path / "without.rrd")["checksums"] == "none"
     assert digest(tmp_path / "with.rrd") == digest(tmp_path / "without.rrd")
     assert compare(tmp_path / "with.rrd", tmp_path / "without.rrd").equal
 

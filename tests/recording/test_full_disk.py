@@ -100,7 +100,11 @@ def test_a_recording_beyond_the_limit_of_the_shell_leaves_the_old_file(share, ru
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
 def test_a_recording_goes_through_a_pipe_which_remains_a_pipe(run, tmp_path):
     os.mkfifo(tmp_path / "pipe")
-    with open(tmp_path / "through.rrd", "wb") as out, subprocess.Popen(["cat", tmp_path / "pipe"], stdout=out):
-        record(run, tmp_path / "pipe")
+    with open(tmp_path / "through.rrd", "wb") as out, subprocess.Popen(["cat", tmp_path / "pipe"], stdout=out) as cat:
+        try:
+            record(run, tmp_path / "pipe")
+        except BaseException:
+            cat.kill()  # which otherwise waits for a writer
+            raise
     assert (tmp_path / "pipe").is_fifo()
     assert read(tmp_path / "through.rrd").complete

@@ -9,17 +9,39 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from sailviz.errors import DamagedError
 from sailviz.recording.comparison.tables import epoch_of, innermost, plain, truth_of, views_of
 from sailviz.recording.entity import is_component, short
 from sailviz.recording.reader import FilePath, Recording, read
 from sailviz.words import duration
+
+HOLD, NONE, DAMAGED = "hold", "none", "damaged"
+UNKNOWN = "none (by an older sailviz, another program, or cut off): it can be read, as it was written or not"
+
+
+def verify(source: FilePath) -> dict[str, Any]:
+    """Whether a recording is as it was written, ready for JSON.
+
+    Keys: path; checksums: "hold", "none" (a file without its own, which was read from end to end) or "damaged";
+    damaged: the entities in which damage lies, as far as that can be told; says: a sentence. RecordingError for what is
+    no recording.
+    """
+    facts: dict[str, Any] = {"path": str(source), "checksums": HOLD, "damaged": [], "says": ""}
+    try:
+        recording = read(source)
+    except DamagedError as error:
+        return facts | {"checksums": DAMAGED, "damaged": list(error.entities), "says": str(error)}
+    if not recording.sealed:
+        return facts | {"checksums": NONE, "says": f"{source}: checksums: {UNKNOWN}"}
+    return facts | {"says": f"{source}: the checksums of its {len(recording.entities)} entities hold"}
 
 
 def info(source: FilePath | Recording) -> dict[str, Any]:
     """Everything about a recording that is not its numbers, ready for JSON. source : path or Recording.
 
     Keys: path, bytes, application, contract, title, family, body, craft, rows, span_s, epoch, complete, ended,
-    identity, versions, accuracy, events, expectations, views, truth (entity -> column -> kind), picture (entities).
+    checksums ("hold", or "none" where the file has none of its own), identity, versions, accuracy, events,
+    expectations, views, truth (entity -> column -> kind), picture (entities).
     """
     recording = read(source)
     scene: Mapping[str, np.ndarray] = recording.get("/scene", {})
@@ -44,6 +66,7 @@ def info(source: FilePath | Recording) -> dict[str, Any]:
         "epoch": None if epoch is None else str(epoch.astype("datetime64[ms]")),
         "complete": recording.complete,
         "ended": told("ended"),
+        "checksums": HOLD if recording.sealed else NONE,
         "identity": recording.identity,
         "versions": recording.versions,
         "accuracy": recording.accuracy,
@@ -96,6 +119,7 @@ def in_words(facts: dict[str, Any]) -> str:
     if facts["contract"] or not facts["complete"]:
         why = f"yes, ended by {facts['ended']}" if facts["ended"] else "yes"
         say("complete", why if facts["complete"] else "no: the run was interrupted, or the file was cut off")
+    say("checksums", "those of every entity hold" if facts["checksums"] == HOLD else UNKNOWN)
     say("identity", facts["identity"])
     say("versions", ", ".join(f"{name} {number}" for name, number in facts["versions"].items()))
     say("accuracy", facts["accuracy"])

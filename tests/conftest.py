@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 import signal
 from typing import NamedTuple
 
@@ -95,3 +96,40 @@ def shipped_run():
         return runs[name]
 
     return run
+
+
+@pytest.fixture(scope="session")
+def harmed():
+    """A function: the content of a file, and chance -> the content as a disk, a network or an editor may leave it."""
+    return _harmed
+
+
+def _harmed(content: bytes, chance: random.Random) -> bytes:
+    while (changed := _with_one_harm(bytearray(content), chance)) == content:
+        continue
+    return changed
+
+
+def _with_one_harm(content: bytearray, chance: random.Random) -> bytes:
+    place, length = chance.randrange(len(content)), chance.randrange(1, 300)
+    match chance.randrange(6):
+        case 0:
+            for _ in range(chance.choice((1, 1, 3, 20))):
+                content[chance.randrange(len(content))] ^= 1 << chance.randrange(8)
+        case 1:
+            del content[place:]
+        case 2:
+            content += chance.randbytes(length)
+        case 3:
+            size = max(1, len(content) // chance.choice((4, 16, 50)))
+            other = chance.randrange(len(content) - size + 1)
+            place = min(place, len(content) - size)
+            content[place : place + size], content[other : other + size] = (
+                content[other : other + size],
+                content[place : place + size],
+            )
+        case 4:
+            content[place : place + length] = bytes(len(content[place : place + length]))
+        case _:
+            del content[place : place + length]
+    return bytes(content)

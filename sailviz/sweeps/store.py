@@ -8,14 +8,15 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from sailviz.errors import SailvizError
+from sailviz import files
+from sailviz.errors import OutputError, SailvizError
 from sailviz.sweeps.definition import Definition
 from sailviz.sweeps.flight import FAILED, schema_of
 
@@ -64,7 +65,11 @@ class MemoryStore:
 
 
 class FileStore(MemoryStore):
-    """Rows that end up in a parquet file; what an earlier, unfinished sweep of the same definition left is taken up."""
+    """Rows that end up in a parquet file; what an earlier, unfinished sweep of the same definition left is taken up.
+
+    Each file holds the definition and a checksum for each of its pages. What is damaged, or of another sweep, is told
+    in one sentence before anything is flown or written.
+    """
 
     path: Path
 
@@ -72,39 +77,35 @@ class FileStore(MemoryStore):
         super().__init__(definition)
         self.path = Path(path)
         self._parts = self.path.with_name(self.path.name + ".parts")
+        self._note = self._parts / "definition.json"  # for people; what is flown already says so itself
         if self.path.is_dir():
             raise SweepError(f"{self.path} is a folder: name the table, for instance {self.path / 'sweep.parquet'}")
-        if self.path.exists():
-            self._same(definition, self._facts_of_table())
-        known = self._parts / "definition.json"
-        if known.exists():
-            self._same(definition, json.loads(known.read_text()))
+        if self._parts.exists() and not self._parts.is_dir():
+            raise SweepError(f"{self._parts} is no folder, and the rows of a sweep lie there while it flies")
         for file in self._files():
-            for first, stop in _groups(file):
+            self._same(definition, file)
+            for first, stop in self._flights(file):
                 self.done[first:stop] = True
         self.resumed = int(self.done.sum())
         if self.done.all():
             return
         try:
+            if not self.path.exists():
+                files.check(self.path, "table")
             self._parts.mkdir(parents=True, exist_ok=True)
-            _whole(known, lambda part: part.write_text(json.dumps(definition.facts(), indent=1)))
         except OSError as error:
-            raise SweepError(f"cannot write {self._parts}: {(error.strerror or str(error)).lower()}") from None
+            raise SweepError(f"cannot write {self._parts}: {files.reason(error)}") from None
+        except OutputError as error:
+            raise SweepError(str(error)) from None
+        _whole(self._note, lambda part: part.write_text(json.dumps(definition.facts(), indent=1)))
 
-    def _facts_of_table(self) -> dict[str, Any]:
-        import pyarrow as pa
-        import pyarrow.parquet as pq
+    def _files(self) -> list[Path]:
+        parts = [file for file in self._parts.glob("*.parquet") if not file.name.startswith(".")]
+        return [self.path] * os.path.lexists(self.path) + sorted(parts)
 
-        try:
-            facts = (pq.read_schema(self.path).metadata or {}).get(_FACTS)
-        except (OSError, pa.ArrowException):
-            facts = None
-        if facts is None:
-            raise SweepError(f"{self.path} exists and is not the table of a sweep: name another file")
-        return json.loads(facts)
-
-    def _same(self, definition: Definition, facts: dict[str, Any]) -> None:
-        old, new = _told(facts), _told(definition.facts())
+    def _same(self, definition: Definition, file: Path) -> None:
+        """Raise SweepError, with what is different, for a file that is not of this sweep."""
+        old, new = _told(self._facts(file)), _told(definition.facts())
         changed = [
             f"{key} was {_short(old.get(key))} and is {_short(new.get(key))}"
             for key in dict.fromkeys([*new, *old])
@@ -112,34 +113,75 @@ class FileStore(MemoryStore):
         ]
         if changed:
             raise SweepError(
-                f"{self.path} holds another sweep: {'; '.join(changed)}. Name another file, or delete this one"
-                + (f" and {self._parts}" if self._parts.exists() else "")
+                f"{file} holds another sweep: {'; '.join(changed)}. Name another file, or delete this one"
+                + (f" and {self._parts}" if file == self.path and self._parts.exists() else "")
             )
 
-    def _files(self) -> list[Path]:
-        return [self.path] * self.path.exists() + sorted(self._parts.glob("*.parquet"))
-
-    def _keep(self, table: pa.Table, first: int) -> None:
-        try:
-            _whole(self._parts / f"{first:012d}-{len(table)}.parquet", lambda part: _write(part, table))
-        except OSError as error:
-            raise SweepError(f"cannot write {self._parts}: {(error.strerror or str(error)).lower()}") from None
-
-    def close(self) -> None:
-        """Make one table of all parts, in the order of the flights."""
+    def _facts(self, file: Path) -> dict[str, Any]:
+        """The definition that a file holds. SweepError where it holds none."""
         import pyarrow as pa
         import pyarrow.parquet as pq
 
-        parts = list(self._parts.glob("*.parquet"))
-        if not parts and (self.path.exists() or not self._parts.exists()):
-            shutil.rmtree(self._parts, ignore_errors=True)
+        if not files.regular(file):
+            raise SweepError(f"{file} is no regular file, and a sweep reads its table again when it goes on")
+        try:
+            facts = json.loads((pq.read_schema(file).metadata or {})[_FACTS])
+        except (OSError, pa.ArrowException, KeyError, ValueError, RecursionError, MemoryError):
+            facts = None
+        if not isinstance(facts, dict):
+            if file == self.path:
+                raise SweepError(f"{file} exists and is not the table of a sweep, or is damaged: name another file")
+            raise self._damaged(file, "it does not say of which sweep it is")
+        return facts
+
+    def _flights(self, file: Path) -> list[tuple[int, int]]:
+        """(first, stop) flight of each row group, which holds consecutive flights. All of the file is read once, so
+        that SweepError tells of damage before it matters."""
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        found = []
+        try:
+            with pq.ParquetFile(file, page_checksum_verification=True) as source:
+                if not source.schema_arrow.equals(self.schema):
+                    raise self._damaged(file, "its columns are not those of this sweep")
+                for group in range(source.num_row_groups):
+                    table = source.read_row_group(group)
+                    table.validate(full=True)
+                    index = table["index"].to_numpy()
+                    if not len(index) or not 0 <= index[0] <= len(self.done) - len(index):
+                        raise self._damaged(file, "it holds flights that there are not")
+                    if not np.array_equal(index, index[0] + np.arange(len(index))):
+                        raise self._damaged(file, "its flights do not follow each other")
+                    found.append((int(index[0]), int(index[0]) + len(index)))
+        except (OSError, pa.ArrowException, ValueError, KeyError, OverflowError, MemoryError) as error:
+            words = (str(error).splitlines() or [""])[0]
+            raise self._damaged(file, words[:120] or "it cannot be read") from None
+        return found
+
+    def _damaged(self, file: Path, words: str) -> SweepError:
+        others = "" if file == self.path else "; all others are kept"
+        return SweepError(f"{file} is damaged: {words}. Delete it, and its flights are flown again{others}")
+
+    def _keep(self, table: pa.Table, first: int) -> None:
+        _whole(self._parts / f"{first:012d}-{len(table)}.parquet", lambda part: _write(part, table))
+
+    def close(self) -> None:
+        """Make one table of all parts, in the order of the flights; the parts go once it is there and whole."""
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+
+        parts = [file for file in self._files() if file != self.path]
+        if not parts:
+            if self.path.exists() or not self.done.any():
+                self._sweep_up(parts)
             return
         groups = sorted(
-            (first, stop, file, i) for file in self._files() for i, (first, stop) in enumerate(_groups(file))
+            (first, stop, file, i) for file in self._files() for i, (first, stop) in enumerate(self._flights(file))
         )
 
         def merge(part: Path) -> None:
-            with pq.ParquetWriter(part, self.schema, compression="zstd") as writer:
+            with pq.ParquetWriter(part, self.schema, compression="zstd", write_page_checksum=True) as writer:
                 waiting: list[pa.Table] = []
                 rows, end = 0, 0
                 for first, stop, file, i in groups:
@@ -156,11 +198,19 @@ class FileStore(MemoryStore):
                 if waiting:
                     writer.write_table(pa.concat_tables(waiting), row_group_size=rows)
 
-        try:
-            _whole(self.path, merge)
-        except OSError as error:
-            raise SweepError(f"cannot write {self.path}: {(error.strerror or str(error)).lower()}") from None
-        shutil.rmtree(self._parts, ignore_errors=True)
+        def whole(part: Path) -> None:
+            if sum(stop - first for first, stop in self._flights(part)) != int(self.done.sum()):
+                raise SweepError(f"{self.path} could not be made of its parts in {self._parts}, which are kept")
+
+        _whole(self.path, merge, whole)
+        self._sweep_up(parts)
+
+    def _sweep_up(self, parts: list[Path]) -> None:
+        """Remove what this sweep put beside its table, and nothing else."""
+        for file in [*parts, self._note]:
+            file.unlink(missing_ok=True)
+        with suppress(OSError):  # not there, or something else lies in it
+            self._parts.rmdir()
 
     def columns(self, names: list[str] | None = None) -> pa.Table:
         """The table, or only some columns of it, read from the file."""
@@ -183,40 +233,26 @@ def counts(store: MemoryStore) -> tuple[int, int]:
     return int(pc.sum(pc.equal(table["status"], FAILED)).as_py() or 0), int(missed.sum())
 
 
-def _groups(file: Path) -> list[tuple[int, int]]:
-    """(first, stop) flight of each row group, from the file's footer alone; each holds consecutive flights."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    try:
-        meta = pq.read_metadata(file)
-    except (OSError, pa.ArrowException) as error:
-        raise SweepError(f"{file} cannot be read: {error}; delete it and its flights are flown again") from None
-    return [
-        (found.min, found.max + 1)
-        for found in (meta.row_group(i).column(0).statistics for i in range(meta.num_row_groups))
-    ]
-
-
 def _write(path: Path, table: pa.Table) -> None:
     import pyarrow.parquet as pq
 
-    pq.write_table(table, path, compression="zstd", row_group_size=max(len(table), 1))
+    rows = max(len(table), 1)
+    pq.write_table(table, path, compression="zstd", row_group_size=rows, write_page_checksum=True)
 
 
-def _whole(path: Path, write: Callable[[Path], object]) -> None:
-    """Write under a temporary name first, so that a file appears whole."""
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+def _whole(path: Path, write: Callable[[Path], object], check: Callable[[Path], None] | None = None) -> None:
+    """Write a file, whole or not at all. SweepError where that cannot be."""
     try:
-        write(part)
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
+        with files.writing(path, "table", check) as part:
+            write(part)
+    except OutputError as error:
+        raise SweepError(f"{error}; the same command goes on from the flights that are done") from None
 
 
 def _told(facts: dict[str, Any]) -> dict[str, Any]:
     """Facts of a definition, each with a name by which a person knows it."""
-    inner = {**facts.get("values", {}), **{f"vary {key}": words for key, words in facts.get("vary", {}).items()}}
+    values, vary = (facts[key] if isinstance(facts.get(key), dict) else {} for key in ("values", "vary"))
+    inner = {**values, **{f"vary {key}": words for key, words in vary.items()}}
     return {key: value for key, value in facts.items() if key not in ("values", "vary")} | inner
 
 

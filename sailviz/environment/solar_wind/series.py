@@ -115,9 +115,9 @@ def _on_even_steps(seconds, columns, most_rows):
     """(usual step s, columns with NaN at the times that were left out). ValueError for irregular times."""
     step = float(np.median(np.diff(seconds)))
     rows = (seconds[-1] - seconds[0]) / step + 1
-    if rows > most_rows:
+    if not rows <= most_rows:
         raise ValueError(
-            f"{len(seconds):,} rows in steps of {step:g} s span {rows:,.0f} of them with their gaps (some "
+            f"{len(seconds):,} rows in steps of {step:g} s span {rows:{',.0f' if rows < 1e15 else '.3g'}} of them with their gaps (some "
             f"{8 * len(columns) * rows / 1e9:,.3g} GB), more than the {most_rows:,} "
             "that most_rows (limits.draws of a scene) allows"
         )
@@ -164,6 +164,8 @@ def series(
     order = np.argsort(seconds, kind="stable")
     sorted_columns = {name: x[order] for name, x in columns.items()}
     again = _repeated(seconds[order], sorted_columns["pressure"], repair)
+    if np.sum(~again) < FEWEST_VALUES:
+        raise ValueError(f"the series has {np.sum(~again)} different times; {FEWEST_VALUES} are needed")
     step, full = _on_even_steps(
         seconds[order][~again], {name: x[~again] for name, x in sorted_columns.items()}, most_rows
     )
@@ -267,6 +269,7 @@ def read_omni(path, **options) -> Series:
         raise ValueError(f"{path}: no omni2_YYYY.dat in this folder")
     hours, rows = [], []
     for file in files:
+        _check_regular(file)
         with open(file, encoding="ascii", errors="replace") as lines:
             for number, line in enumerate(lines, 1):
                 words = line.split()
@@ -303,6 +306,7 @@ def read_series(path, columns=None, **options) -> Series:
     ending = path.suffix.lower()
     if ending not in (".csv", ".npz", ".parquet"):
         return read_omni(path, **options)
+    _check_regular(path)
     table = {".csv": _csv, ".npz": _npz, ".parquet": _parquet}[ending](path)
     ours = {theirs: name for name, theirs in (columns or {}).items()}
     lost = sorted(set(ours) - set(table))
@@ -346,11 +350,20 @@ def _numbers(path, name, column):
         raise ValueError(f"{path}: column {name} is not made of numbers ({error})") from None
 
 
+def _check_regular(path):
+    """ValueError for a pipe or a device, which may never end."""
+    if path.exists() and not path.is_file():
+        raise ValueError(f"{path}: not a regular file")
+
+
 def _csv(path):
     import csv
 
-    with open(path, newline="", encoding="utf-8-sig") as file:
-        rows = [row for row in csv.reader(file) if row]
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            rows = [row for row in csv.reader(file) if row]
+    except (csv.Error, UnicodeDecodeError) as error:
+        raise ValueError(f"{path}: no table of text in UTF-8 ({error})") from None
     if not rows:
         raise ValueError(f"{path}: the file is empty")
     head = [name.strip() for name in rows[0]]
@@ -362,23 +375,29 @@ def _csv(path):
 
 def _npz(path):
     try:
-        with np.load(path, allow_pickle=False) as file:
-            return {name: file[name] for name in file.files}
-    except (ValueError, OSError) as error:
-        if isinstance(error, FileNotFoundError):
-            raise
-        raise ValueError(f"{path}: no npz file of plain arrays ({error})") from None
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as archive:
+            return {name: archive[name] for name in archive.files}
+    except FileNotFoundError:
+        raise
+    except Exception as error:  # damage in an archive shows in whatever way it meets numpy, zipfile or zlib
+        raise ValueError(f"{path}: no npz file of plain arrays ({_first_line(error)})") from None
 
 
 def _parquet(path):
     try:
-        import pyarrow
         from pyarrow import parquet
     except ImportError:
         raise ValueError(f"{path}: reading parquet needs pyarrow: pip install pyarrow") from None
 
     try:
-        table = parquet.read_table(path)
-    except pyarrow.ArrowInvalid as error:
-        raise ValueError(f"{path}: no parquet file ({error})") from None
-    return {name: table[name].to_numpy() for name in table.column_names}
+        table = parquet.ParquetFile(path, page_checksum_verification=True).read()
+        table.validate(full=True)
+        return {name: table[name].to_numpy() for name in table.column_names}
+    except FileNotFoundError:
+        raise
+    except Exception as error:  # likewise
+        raise ValueError(f"{path}: no parquet file that can be read ({_first_line(error)})") from None
+
+
+def _first_line(error):
+    return (str(error).splitlines() or [""])[0][:160] or type(error).__name__

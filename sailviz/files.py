@@ -214,9 +214,10 @@ def _lock(handle: int) -> bool:
 
 
 def _followed(path: Path, what: str) -> Path:
-    """The file behind a link. OutputError for links that lead round in a circle."""
+    """The file behind a link; a link to what is no file stays as it is, since a pipe may have no other name.
+    OutputError for links that lead round in a circle."""
     try:
-        return path.resolve() if path.is_symlink() else path
+        return path.resolve() if path.is_symlink() and (path.is_file() or not path.exists()) else path
     except (OSError, RuntimeError) as error:
         why = reason(error) if isinstance(error, OSError) else "its links lead round in a circle"
         raise OutputError(f"cannot write the {what} {path}: {why}") from None

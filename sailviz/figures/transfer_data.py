@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sailviz import transfers
+from sailviz import files, transfers
 from sailviz.constants import DAY
 from sailviz.design.minimum_time import rendezvous
 from sailviz.shipped import shipped_folder
@@ -58,20 +58,19 @@ def _rows(name: str) -> Iterator[dict[str, str]]:
 
 
 def compute_times(path: Path) -> None:
-    """Search every flight anew; rows are written as they are found."""
+    """Search every flight anew."""
     wanted = {(t, d, a) for t in TARGETS for d in OVER_ACCELERATION for a in ACCELERATIONS}
     wanted |= {(t, d, 1.0) for t in TARGETS[:3] for d in COMPARED}
-    with open(path, "w", newline="", encoding="utf-8") as file:
+    with files.writing(path, "table") as part, open(part, "w", newline="", encoding="utf-8") as file:
         file.write("target,device,acceleration_mm_s2,time_d,revolutions\n")
         for target, device, a in sorted(wanted, key=lambda x: (TARGETS.index(x[0]), x[1], -x[2])):
             flight = transfers.find("earth", target, device, a * 1e-3).flight
             file.write(f"{target},{device},{a:g},{flight.time / DAY:.4f},{flight.revolutions:.4f}\n")
-            file.flush()
 
 
 def compute_windows(path: Path) -> None:
     """Search every departure anew."""
-    with open(path, "w", newline="", encoding="utf-8") as file:
+    with files.writing(path, "table") as part, open(part, "w", newline="", encoding="utf-8") as file:
         file.write("target,departure,time_d\n")
         for target, (first, last, dates) in WINDOWS.items():
             flight = rendezvous(

@@ -33,7 +33,8 @@ def export(
     """Write a recording (or a Run, or a path of either kind that `compare` takes) for another program -> files written.
 
     out : file or folder; without one a file named after the recording in the current folder. to : one of FORMATS, by
-    default the ending of `out`. entities : those wanted, all of the truth by default. frame : of an OEM, see `to_oem`.
+    default the ending of `out`; a device or a pipe takes the rows alone, with no file of events beside it. entities :
+    those wanted, all of the truth by default. frame : of an OEM, see `to_oem`.
     Raises RecordingError, in one sentence, for what cannot be read, written or said in that format.
     """
     data = evidence(source)
@@ -85,12 +86,13 @@ def _write_tables(data: Evidence, path: Path, to: str, wanted: Sequence[str]) ->
         return (written_whole(path, lambda part: _write_arrow(part, events.replace_schema_metadata(meta), to)),)
     apart = [] if wanted else [name for name in entities if name.startswith("/ensemble/")]  # on rows of their own
     table = flat_table(data, [name for name in entities if name not in apart]).replace_schema_metadata(meta)
+    alone = path.exists() and not path.is_file()  # a device or a pipe: nothing lies beside it
     written = [written_whole(path, lambda part: _write_arrow(part, table, to))]
-    for name in apart:
+    for name in [] if alone else apart:
         beside = path.with_name(f"{path.stem}{name.replace('/', '.')}{path.suffix}")
         own = flat_table(data, [name]).replace_schema_metadata(meta)
         written.append(written_whole(beside, partial(_write_arrow, table=own, to=to)))
-    if events is not None:
+    if events is not None and not alone:
         beside = path.with_name(f"{path.stem}.events{path.suffix}")
         written.append(written_whole(beside, lambda part: _write_arrow(part, events, to)))
     return tuple(written)

@@ -258,7 +258,7 @@ ENSEMBLES = (
 
 TABLE = (*SYSTEM, *EARTH, *of_craft("/world/craft"), *of_craft("/sail"), *CLOSE_UP, *TETHER, *CURVES, *ENSEMBLES)
 NUMBERS = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/approximation", "/ensemble", "/events")
-NUMBERS = (*NUMBERS, "/scene", "/__properties")  # what is not drawn: the truth itself
+NUMBERS = (*NUMBERS, "/scene", "/__properties", "/__checksums")  # what is not drawn: the truth itself
 
 
 @cache

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import stat
 import subprocess
 import sys
 import time
@@ -11,6 +12,7 @@ import time
 import pytest
 from click.testing import CliRunner
 
+from sailviz import files
 from sailviz.cli import main
 
 LONG = (
@@ -119,3 +121,54 @@ def test_a_list_that_nobody_reads_to_its_end_is_no_failed_expectation(tmp_path):
     )
     assert done.returncode in (0, 141)
     assert "Traceback" not in done.stderr
+
+
+def piped(stdout):
+    """A run whose recording goes to a standard output -> exit code, what it said."""
+    words = [sys.executable, "-m", "sailviz", "run", "spirals/optical-sail", "-o", "-"]
+    done = subprocess.run(words, stdout=stdout, stderr=subprocess.PIPE, text=True, timeout=600)
+    return done.returncode, done.stderr
+
+
+@posix
+def test_a_recording_that_nobody_reads_ends_at_once():
+    source, held = os.pipe()
+    os.close(source)
+    code, said = piped(held)
+    os.close(held)
+    assert (code, said) == (2, "cannot write the recording to standard output: nobody reads what is written\n")
+
+
+@posix
+def test_a_recording_into_a_full_device_ends_at_once_and_the_device_remains(tmp_path):
+    node = tmp_path / "full"
+    try:
+        os.mknod(node, 0o666 | stat.S_IFCHR, os.makedev(1, 7))
+        device = open(node, "wb")  # noqa: SIM115
+    except OSError:
+        pytest.skip("no device can be made here")
+    with device:
+        code, said = piped(device)
+    assert code == 2
+    assert said.startswith("cannot write the recording to standard output: no space is left (all ")
+    assert said.count("\n") == 1
+    named = subprocess.run(
+        [sys.executable, "-m", "sailviz", "run", "spirals/optical-sail", "-q", "-o", str(node)],
+        capture_output=True, text=True, timeout=600,
+    )  # fmt: skip
+    assert (named.returncode, named.stderr) == (2, f"cannot write the recording {node}: no space is left\n")
+    assert node.is_char_device()
+
+
+@posix
+def test_a_run_that_is_killed_leaves_the_older_file_as_it_was(tmp_path):
+    (tmp_path / "debris-260kg.rrd").write_bytes(b"older")
+    process = begun(tmp_path, *LONG)
+    process.kill()
+    process.communicate(timeout=60)
+    assert (tmp_path / "debris-260kg.rrd").read_bytes() == b"older"
+    parts = list(tmp_path.glob(".*.part"))
+    assert len(parts) == 1
+    os.utime(parts[0], (0, 0))  # a minute later
+    files.check(tmp_path / "debris-260kg.rrd")
+    assert [path.name for path in tmp_path.iterdir()] == ["debris-260kg.rrd"]

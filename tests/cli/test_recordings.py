@@ -1,6 +1,8 @@
 """info, export, compare and digest from a shell: what they print and how they exit."""
 
 import json
+import re
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -114,3 +116,35 @@ def test_export_refuses_in_one_sentence(files, tmp_path):
     assert sailviz("export", files["a"]).exit_code == 2
     assert sailviz("export", files["a"], "--to", "csv", "--entity", "/stat").exit_code == 2
     assert list(tmp_path.iterdir()) == []
+
+
+def damaged(path, folder):
+    """A copy of a recording in which four bytes of its middle are others."""
+    content = bytearray(Path(path).read_bytes())
+    content[len(content) // 2 : len(content) // 2 + 4] = b"\xff" * 4
+    copy = folder / "damaged.rrd"
+    copy.write_bytes(content)
+    return copy
+
+
+def test_verify_names_the_damaged_entities_and_looks_at_every_file(files, tmp_path):
+    wrong = damaged(files["a"], tmp_path)
+    found = sailviz("info", "--verify", files["a"], wrong, tmp_path / "none.rrd", files["b"])
+    assert found.exit_code == 2
+    assert found.output.count("entities hold") == 2
+    assert re.search(r"damaged.rrd is damaged: (/\S+, )*/\S+ do(es)? not have the checksum", found.stderr)
+    assert "no such file" in found.stderr
+    assert sailviz("info", "--verify", files["a"]).exit_code == 0
+    told = json.loads(sailviz("info", "--verify", "--json", wrong).stdout)
+    assert told["checksums"] == "damaged"
+    assert all(name.startswith("/") for name in told["damaged"])
+
+
+@pytest.mark.parametrize("verb", [("info",), ("digest",), ("export", "--to", "npz"), ("compare", "-q")])
+def test_a_damaged_recording_is_bad_input_and_never_different(verb, files, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    wrong = damaged(files["a"], tmp_path)
+    found = sailviz(*verb, wrong, *[files["a"]] * (verb[0] == "compare"))
+    assert found.exit_code == 2
+    assert found.stderr.count("\n") == 1
+    assert "is damaged" in found.stderr

@@ -157,6 +157,8 @@ class FileStore(MemoryStore):
         except (OSError, pa.ArrowException, ValueError, KeyError, OverflowError, MemoryError) as error:
             words = (str(error).splitlines() or [""])[0]
             raise self._damaged(file, words[:120] or "it cannot be read") from None
+        if not found:
+            raise self._damaged(file, "it holds no flights")
         return found
 
     def _damaged(self, file: Path, words: str) -> SweepError:

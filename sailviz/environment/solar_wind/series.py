@@ -117,7 +117,7 @@ def _on_even_steps(seconds, columns, most_rows):
     rows = (seconds[-1] - seconds[0]) / step + 1
     if not rows <= most_rows:
         raise ValueError(
-            f"{len(seconds):,} rows in steps of {step:g} s span {rows:{',.0f' if rows < 1e15 else '.3g'}} of them with their gaps (some "
+            f"{len(seconds):,} rows in steps of {step:g} s span {rows:,.12g} of them with their gaps (some "
             f"{8 * len(columns) * rows / 1e9:,.3g} GB), more than the {most_rows:,} "
             "that most_rows (limits.draws of a scene) allows"
         )
@@ -359,11 +359,11 @@ def _check_regular(path):
 def _csv(path):
     import csv
 
-    try:
+    def read():
         with open(path, newline="", encoding="utf-8-sig") as file:
-            rows = [row for row in csv.reader(file) if row]
-    except (csv.Error, UnicodeDecodeError) as error:
-        raise ValueError(f"{path}: no table of text in UTF-8 ({error})") from None
+            return [row for row in csv.reader(file) if row]
+
+    rows = _decoded(path, read, "table of text in UTF-8")
     if not rows:
         raise ValueError(f"{path}: the file is empty")
     head = [name.strip() for name in rows[0]]
@@ -374,30 +374,30 @@ def _csv(path):
 
 
 def _npz(path):
-    try:
+    def columns():
         with open(path, "rb") as file, np.load(file, allow_pickle=False) as archive:
             return {name: archive[name] for name in archive.files}
-    except FileNotFoundError:
-        raise
-    except Exception as error:  # damage in an archive shows in whatever way it meets numpy, zipfile or zlib
-        raise ValueError(f"{path}: no npz file of plain arrays ({_first_line(error)})") from None
+
+    return _decoded(path, columns, "npz file of plain arrays")
 
 
 def _parquet(path):
-    try:
-        from pyarrow import parquet
-    except ImportError:
-        raise ValueError(f"{path}: reading parquet needs pyarrow: pip install pyarrow") from None
+    from pyarrow import parquet
 
-    try:
+    def columns():
         table = parquet.ParquetFile(path, page_checksum_verification=True).read()
         table.validate(full=True)
         return {name: table[name].to_numpy() for name in table.column_names}
+
+    return _decoded(path, columns, "parquet file that can be read")
+
+
+def _decoded(path, columns, what):
+    """What `columns` reads of a file. ValueError for damage, which shows in whatever way it meets the decoder."""
+    try:
+        return columns()
     except FileNotFoundError:
         raise
-    except Exception as error:  # likewise
-        raise ValueError(f"{path}: no parquet file that can be read ({_first_line(error)})") from None
-
-
-def _first_line(error):
-    return (str(error).splitlines() or [""])[0][:160] or type(error).__name__
+    except Exception as error:
+        why = (str(error).splitlines() or [""])[0][:160] or type(error).__name__
+        raise ValueError(f"{path}: no {what} ({why})") from None

@@ -269,7 +269,8 @@ def read_omni(path, **options) -> Series:
         raise ValueError(f"{path}: no omni2_YYYY.dat in this folder")
     hours, rows = [], []
     for file in files:
-        _check_regular(file)
+        if file.exists() and not file.is_file():  # a pipe or a device may never end
+            raise ValueError(f"{file}: not a regular file")
         with open(file, encoding="ascii", errors="replace") as lines:
             for number, line in enumerate(lines, 1):
                 words = line.split()
@@ -306,7 +307,8 @@ def read_series(path, columns=None, **options) -> Series:
     ending = path.suffix.lower()
     if ending not in (".csv", ".npz", ".parquet"):
         return read_omni(path, **options)
-    _check_regular(path)
+    if path.exists() and not path.is_file():
+        raise ValueError(f"{path}: not a regular file")
     table = {".csv": _csv, ".npz": _npz, ".parquet": _parquet}[ending](path)
     ours = {theirs: name for name, theirs in (columns or {}).items()}
     lost = sorted(set(ours) - set(table))
@@ -348,12 +350,6 @@ def _numbers(path, name, column):
         return np.asarray(column, dtype=float)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{path}: column {name} is not made of numbers ({error})") from None
-
-
-def _check_regular(path):
-    """ValueError for a pipe or a device, which may never end."""
-    if path.exists() and not path.is_file():
-        raise ValueError(f"{path}: not a regular file")
 
 
 def _csv(path):

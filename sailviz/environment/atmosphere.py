@@ -167,18 +167,29 @@ def lookup(p, at, t, latitude, local_time, altitude, f107):
     held at the edges. t : s since the start; latitude : rad; local_time : rad, 0 at midnight, any number of turns;
     altitude : m, 100-1500 km; f107 : sfu.
     """
+    return density_in(p, at, t, cell(p, grid_at(at), latitude, local_time, altitude, f107, 1))
+
+
+@inlined
+def grid_at(at):
+    """Where the grid of the first season begins in a row that begins at `at`; the others' cells are the same."""
+    return at + _HEADER
+
+
+@inlined
+def density_in(p, at, t, place):
+    """As `lookup`, at a place in the grid of the first season that `cell` or `held_cell` found."""
     seasons, around, length = p[at + _SEASONS], p[at + _ROUND], int(p[at + _LENGTH])
-    begin = at + _HEADER
     if seasons == 1.0:
-        return np.exp(quantity(p, cell(p, begin, latitude, local_time, altitude, f107, 1), 0, 1))
-    place = p[at + _FIRST] + p[at + _RATE] * t
+        return np.exp(quantity(p, place, 0, 1))
+    moment = p[at + _FIRST] + p[at + _RATE] * t
     count = seasons
     if around > 0.0:
-        place -= np.floor(place / around) * around
+        moment -= np.floor(moment / around) * around
         count = around + 1.0
-    season, weight = fraction(place, count)
+    season, weight = fraction(moment, count)
     following = season + 1 if season + 1 < int(seasons) else 0
-    n, row, column, step, wi, wj, wk, wl = cell(p, begin, latitude, local_time, altitude, f107, 1)
+    n, row, column, step, wi, wj, wk, wl = place
     now = quantity(p, (n + np.uint64(season * length), row, column, step, wi, wj, wk, wl), 0, 1)
     then = quantity(p, (n + np.uint64(following * length), row, column, step, wi, wj, wk, wl), 0, 1)
     return np.exp(now + weight * (then - now))

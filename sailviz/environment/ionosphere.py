@@ -82,7 +82,12 @@ def lookup(p, at, latitude, local_time, altitude, f107):
     Linear in all four, the density in its logarithm; held at the edges. A brake below 200 km is the caller's to
     switch off.
     """
-    place = cell(p, at, latitude, local_time, altitude, f107, 2)
+    return plasma_in(p, cell(p, at, latitude, local_time, altitude, f107, 2))
+
+
+@inlined
+def plasma_in(p, place):
+    """As `lookup`, at a place that `cell` or `held_cell` found."""
     return np.exp(quantity(p, place, 0, 2)), quantity(p, place, 1, 2)
 
 

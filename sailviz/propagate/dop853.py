@@ -39,6 +39,7 @@ from sailviz.propagate.stepping import (
     begin,
     close_block,
     happenings,
+    next_edge,
     next_limit,
     open_block,
     rows_until,
@@ -306,17 +307,21 @@ def advance_compiled(
         if count[EVENTS] > MOST_EVENTS:
             count[STATUS] = EVENTS_FULL
             break
-        # one accepted step, landing on the next kink of the thrust or on the end
-        limit = next_limit(breaks, interval, t_end)
+        # one accepted step, landing on the next kink of the thrust or of other forces, or on the end
+        limit = target = next_limit(breaks, interval, t_end)
+        if p.callbacks.edges != 0:
+            target, jumps = next_edge(t, limit, min(1.01 * clock[STEP], largest_step), y, k[0], p)
+            if jumps:
+                derivative(t, y, factor, p, k[0])
         h, landing, rejected, wish, error = attempt(
-            t, limit, clock[STEP], largest_step, t_end, tolerance, factor, p, k, count, mu
+            t, target, clock[STEP], largest_step, t_end, tolerance, factor, p, k, count, mu
         )
         if count[STATUS] != DONE:
             break
         clock[STEP] = next_step(h, landing, rejected, wish, error)
         count[STEPS] += 1
         t0 = t
-        t = limit if landing else t + h
+        t = target if landing else t + h
         touched, passed = surface_met(y, new, mu, surface)
         clock[DENSE_START], clock[DENSE_STEP] = t0, h
         if watched > 0 or touched or passed or t_out[row] < t:
@@ -330,4 +335,5 @@ def advance_compiled(
         if jumps:
             derivative(t, y, factor, p, k[0])
         ended = count[STATUS] != DONE
+    p.held.active = 0  # who looks at the model from outside sees every place as it is
     return close_block(s, t_out, row, ended)

@@ -100,6 +100,7 @@ def model(
     steering_callback: Callback | None = None,
     device_callback: Callback | None = None,
     forces: Sequence[Callback] = (),
+    edges: Callback | None = None,
     control: Callback | None = None,
     control_table: np.ndarray[Any, Any] | None = None,
     control_law: np.ndarray[Any, Any] | None = None,
@@ -145,7 +146,7 @@ def model(
 
     callbacks = p["callbacks"]
     callbacks["user_steering"], callbacks["user_force"] = user_steering, user_force
-    given = {"steering": steering_callback, "device": device_callback, "control": control}
+    given = {"steering": steering_callback, "device": device_callback, "control": control, "edges": edges}
     for word, one in given.items():
         if one is not None:
             callbacks[word] = one.address

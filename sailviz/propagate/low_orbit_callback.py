@@ -8,11 +8,12 @@ from __future__ import annotations
 import numpy as np
 from numba import carray
 
-from sailviz.compiled import STATE, called, compiled
+from sailviz.compiled import STATE, called, compiled, inlined
 from sailviz.constants import ELEMENTARY_CHARGE, MU_EARTH, ROTATION_EARTH
 from sailviz.environment import atmosphere, ionosphere, magnetic, sun
 from sailviz.environment.eclipse import NO_SHADOW, sunlit
 from sailviz.environment.gravity import geodetic_altitude
+from sailviz.environment.grid import held_cell
 from sailviz.environment.solar_level import flux
 from sailviz.propagate.callbacks import Callback, callback
 from sailviz.propagate.parameters import array_at
@@ -20,7 +21,6 @@ from sailviz.propulsion.plasma_brake import (
     NEGATIVE,
     SPINNING,
     TILTED,
-    limited_voltage,
     negative_force_per_length,
     positive_force_per_length,
     tether_current,
@@ -39,7 +39,9 @@ def surroundings(t, x, y, z, r, p):
         latitude = np.arcsin(z / r)
         local_time = sun.local_time(t, x, y, p.sun)
         f107 = flux(t, p.solar_level)
-    if p.surface.shadow != NO_SHADOW:
+    if p.held.active != 0:
+        light = float(p.held.lit)
+    elif p.surface.shadow != NO_SHADOW:
         sx, sy, sz = sun.direction(t, p.sun)
         light = sunlit(p.surface.shadow, x, y, z, sx, sy, sz, p.surface.radius)
     return latitude, local_time, altitude, f107, light
@@ -49,6 +51,11 @@ def surroundings(t, x, y, z, r, p):
 def air_density(t, r, latitude, local_time, altitude, f107, p, tables):
     """Mass density of the air, kg/m3."""
     if p.air.kind == atmosphere.TABLED:
+        if p.held.active != 0:
+            i, j, k = p.held.air_latitude, p.held.air_time, p.held.air_altitude
+            grid = atmosphere.grid_at(p.places.air)
+            place = held_cell(tables, grid, latitude, local_time, altitude, f107, 1, i, j, k)
+            return atmosphere.density_in(tables, p.places.air, t, place)
         return atmosphere.lookup(tables, p.places.air, t, latitude, local_time, altitude, f107)
     return ionosphere.exponential(r, p.air.reference_radius, p.air.density, p.air.scale_height)
 
@@ -58,6 +65,11 @@ def plasma_at(r, latitude, local_time, altitude, f107, p, tables):
     """(density 1/m3, mean ion mass kg) of the plasma; of a given force profile (force per length N/m, 0)."""
     plasma = p.plasma
     if plasma.kind == ionosphere.TABLE_PROFILE:
+        if p.held.active != 0:
+            i, j, k = p.held.plasma_latitude, p.held.plasma_time, p.held.plasma_altitude
+            place = held_cell(tables, p.places.plasma, latitude, local_time, altitude, f107, 2, i, j, k)
+            n, mass = ionosphere.plasma_in(tables, place)
+            return n * plasma.density_factor, mass
         n, mass = ionosphere.lookup(tables, p.places.plasma, latitude, local_time, altitude, f107)
         return n * plasma.density_factor, mass
     height = r - plasma.surface_radius
@@ -72,22 +84,28 @@ def power_drawn(density, ion_mass, speed, voltage, p):
     return voltage * current / p.brake.efficiency
 
 
+@inlined
+def power_available(light, p):
+    """Power for the tether, W, in sunlight or in the shadow."""
+    return p.brake.power if light > 0.5 else p.brake.eclipse_power
+
+
 @called
 def applied_voltage(density, ion_mass, speed, light, p):
     """|V| that the power allows, V: full, or what the power in sunlight or in the shadow supports."""
-    power = p.brake.power if light > 0.5 else p.brake.eclipse_power
+    power = power_available(light, p)
     if power == np.inf:
         return p.brake.voltage
     if power == 0.0:
         return 0.0
     voltage = p.brake.voltage
     drawn = power_drawn(density, ion_mass, speed, voltage, p)
-    if drawn <= power:
+    if p.held.limited == 0 if p.held.active != 0 else drawn <= power:
         return voltage
-    for _ in range(3):  # the ram speed in the current: 1 % at 100 V
-        voltage = limited_voltage(voltage, drawn, power) if drawn > power else voltage
+    for _ in range(3):  # from above, as the power grows less than with V^1.5: the ram speed is 1 % of it at 100 V
+        voltage *= (power / drawn) ** (2.0 / 3.0)
         drawn = power_drawn(density, ion_mass, speed, voltage, p)
-    return voltage * min(1.0, power / drawn)  # never above: the power grows faster than the voltage
+    return voltage * (power / drawn)  # never above: the power grows faster than the voltage
 
 
 @called

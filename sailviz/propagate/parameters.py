@@ -18,7 +18,7 @@ from numba.extending import intrinsic
 from numba.np import arrayobj
 
 from sailviz.compiled import layout
-from sailviz.environment import atmosphere, gravity, ionosphere, solar_level, sun, third_body
+from sailviz.environment import atmosphere, gravity, grid, ionosphere, solar_level, sun, third_body
 from sailviz.propulsion import electric_sail, plasma_brake, solar_sail, thruster
 from sailviz.steering import attitude
 
@@ -55,6 +55,7 @@ class Callbacks(NamedTuple):
     steering: int = 0
     device: int = 0
     control: int = 0
+    edges: int = 0  # where steps have to end, see edges_callback
     forces: int = 0  # how many forces of the environment there are; Places.forces says where their addresses stand
 
 
@@ -93,6 +94,7 @@ class Parameters(NamedTuple):
     local: attitude.Local
     table: attitude.Table
     primer: Primer
+    held: grid.Held
     callbacks: Callbacks
     places: Places
 

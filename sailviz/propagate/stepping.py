@@ -279,6 +279,17 @@ def next_limit(breaks, interval, t_end):
 
 
 @inlined
+def next_edge(t, limit, span, y, derivative, p):
+    """(time to which a step of at most span s from t should go so that it crosses no kink of the forces, whether they
+    have jumped at t), by the callback that knows; the step keeps to what that holds in p."""
+    x, yy, z, vx, vy, vz, m = y[0], y[1], y[2], y[3], y[4], y[5], y[6]
+    ahead, jumps, _, _ = call(
+        p.callbacks.edges, 0, t, x, yy, z, vx, vy, vz, m, derivative[3], derivative[4], derivative[5], p, span
+    )
+    return min(limit, t + ahead), jumps != 0.0
+
+
+@inlined
 def settle(s, breaks, factors, p, t, limit, t_end, cut, interval, factor):
     """Make the end of a step, in the row NEW, the state to go on from. cut : whether an event has cut it short. Returns
     the interval of the thrust, its factor, and whether the force jumps here, so that its derivative is to be made

@@ -195,14 +195,6 @@ def electron_flux(density: npt.ArrayLike, electron_temperature: npt.ArrayLike) -
     return np.multiply(ELEMENTARY_CHARGE, density) * thermal
 
 
-@inlined
-def limited_voltage(nominal_voltage, nominal_power, available_power):
-    """`power_limited_voltage` for scalars inside the propagator."""
-    if available_power >= nominal_power:
-        return nominal_voltage
-    return nominal_voltage * (max(available_power, 0.0) / nominal_power) ** (2.0 / 3.0)
-
-
 def power_limited_voltage(
     nominal_voltage: npt.ArrayLike, nominal_power: npt.ArrayLike, available_power: npt.ArrayLike
 ) -> np.ndarray:

@@ -18,6 +18,7 @@ from sailviz.environment import atmosphere, ionosphere, solar_level, sun, third_
 from sailviz.environment.eclipse import CONE, CYLINDER, NO_SHADOW
 from sailviz.environment.gravity import strengths
 from sailviz.environment.sun import sun_parameters
+from sailviz.propagate.edges_callback import low_orbit_edges
 from sailviz.propagate.low_orbit_callback import low_orbit_forces
 from sailviz.propagate.parameters import Parameters
 from sailviz.scene.environment import (
@@ -87,7 +88,10 @@ def _density_profile(part: DensityProfile, place: Place) -> dict[str, Any]:
 
 
 def _plasma_table(part: IonosphereTable, place: Place) -> dict[str, Any]:
-    found = {"plasma": ionosphere.Parameters(ionosphere.TABLE_PROFILE, density_factor=part.density_factor)}
+    found: dict[str, Any] = {
+        "plasma": ionosphere.Parameters(ionosphere.TABLE_PROFILE, density_factor=part.density_factor),
+        "edges": low_orbit_edges(),
+    }
     flux = place.scene.environment.solar_flux
     return found if flux is None else found | {"plasma_table": ionosphere.table(None if flux == "cycle" else flux)}
 
@@ -116,7 +120,11 @@ def _exponential_air(part: ExponentialAtmosphere, place: Place) -> dict[str, Any
 
 
 def _tabled_air(part: MsisAtmosphere, place: Place) -> dict[str, Any]:
-    found = {"air": atmosphere.Parameters(atmosphere.TABLED, _drag_area(place.scene)), "forces": (low_orbit_forces(),)}
+    found = {
+        "air": atmosphere.Parameters(atmosphere.TABLED, _drag_area(place.scene)),
+        "forces": (low_orbit_forces(),),
+        "edges": low_orbit_edges(),
+    }
     flux = place.scene.environment.solar_flux
     if flux is None:
         return found
@@ -200,6 +208,8 @@ def surroundings(scene: Scene, body: Body, epoch: np.datetime64 | None) -> dict[
     parts["j2_strength"], *parts["zonal"] = strengths(MU_EARTH, RADIUS_EARTH, *use)
     parts["sun"] = sun_parameters(epoch, around.sun_right_ascension or 0.0)
     parts["shadow"] = {"cylinder": CYLINDER, "cone": CONE}[around.shadow] if watches_shadow(scene) else NO_SHADOW
+    if getattr(scene.device, "eclipse", "on") != "on":
+        parts["edges"] = low_orbit_edges()
     if around.solar_flux == "cycle":
         assert epoch is not None  # or the scene would not have been accepted
         parts["solar_level"] = solar_level.cycle(ephemeris.decimal_year(epoch))

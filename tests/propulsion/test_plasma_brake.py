@@ -12,7 +12,6 @@ from sailviz.propulsion.plasma_brake import (
     current,
     electron_flux,
     force_per_length,
-    limited_voltage,
     magnetic_factor,
     negative_force_per_length,
     positive_force_per_length,
@@ -155,9 +154,7 @@ def test_voltage_follows_the_two_thirds_power_of_the_available_power():
     for share in (0.05, 0.5, 1.0):
         voltage = power_limited_voltage(1000.0, nominal, share * nominal)
         assert power(**at | {"voltage": voltage}) == pytest.approx(share * nominal, rel=1e-12)
-        assert limited_voltage.py_func(1000.0, nominal, share * nominal) == pytest.approx(voltage, rel=1e-15)
     assert power_limited_voltage(1000.0, nominal, np.array([-1.0, 2 * nominal])).tolist() == [0.0, 1000.0]
-    assert limited_voltage.py_func(1000.0, nominal, -1.0) == 0.0
 
 
 # ---------------------------------------------------------------- composition, field

@@ -147,6 +147,8 @@ def read_oem(path: str | Path) -> Ephemeris:
 
 
 def _lines(path: str | Path) -> list[str]:
+    if Path(path).exists() and not Path(path).is_file():  # a pipe or a device may never end
+        raise RecordingError(f"cannot read {path}: it is not a regular file")
     try:
         lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
     except UnicodeDecodeError:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import random
+
 import numpy as np
 import pytest
 
@@ -208,3 +211,26 @@ def test_precession_is_that_of_the_iau_2006_model():
         theirs = erfa.pmat06(2451545.0 + (year - 2000) * 365.25, 0.0)
         off = np.degrees(np.abs(frames.precession((year - 2000) / 100) - theirs).max()) * 3600
         assert off < 0.024  # arcsec: the frame bias between GCRF and the equator of J2000 is 0.0231
+
+
+def test_a_damaged_message_is_read_with_finite_numbers_or_refused_in_one_sentence(tmp_path, harmed):
+    chance, told = random.Random(2), []
+    for _ in range(150):
+        (tmp_path / "a.oem").write_bytes(harmed(OEM.encode(), chance))
+        try:
+            found = read_oem(tmp_path / "a.oem")
+        except RecordingError as error:
+            told.append(str(error))
+        else:
+            assert np.isfinite(found.position).all()
+            assert np.all(np.diff(found.time) >= 0)
+    assert len(told) > 50
+    assert all("\n" not in sentence for sentence in told)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes with names")
+def test_a_pipe_or_a_folder_is_no_message(tmp_path):
+    os.mkfifo(tmp_path / "a.oem")
+    for path in (tmp_path / "a.oem", tmp_path):
+        with pytest.raises(RecordingError, match="not a regular file"):
+            read_oem(path)

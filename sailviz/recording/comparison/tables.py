@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import re
-import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -15,6 +14,7 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
+from sailviz import files
 from sailviz.errors import RecordingError
 from sailviz.recording.entity import (
     TIMELINES,
@@ -152,13 +152,15 @@ def truth_of(recording: Recording) -> list[str]:
 
 def of_npz(path: Path, label: str) -> Evidence:
     """An archive of arrays as evidence. RecordingError for one that `export` has not written."""
+    if path.exists() and not path.is_file():
+        raise RecordingError(f"{path} is no regular file, and a table is read in any order")
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as stored:
             values = {name: stored[name] for name in stored.files}
     except OSError as error:
-        raise RecordingError(f"cannot read {path}: {(error.strerror or str(error)).lower()}") from None
-    except (ValueError, zipfile.BadZipFile, EOFError, KeyError):
-        raise RecordingError(f"{path} is not a table of numpy arrays, or was cut off") from None
+        raise RecordingError(f"cannot read {path}: {files.reason(error)}") from None
+    except Exception:  # damage shows in whatever way it meets numpy, zipfile or zlib
+        raise RecordingError(f"{path} is not a table of numpy arrays, or is damaged or cut off") from None
     if "state.time_s" not in values or "state.step" not in values:
         raise RecordingError(f"{path} was not written by `sailviz export --to npz`: it has no state.time_s")
     tables: dict[str, dict[str, np.ndarray]] = {}
@@ -169,8 +171,11 @@ def of_npz(path: Path, label: str) -> Evidence:
     rows = tables.pop("/events", None)
     events: tuple[EventRow, ...] = ()
     if rows is not None:
-        columns = zip(rows["name"], rows["time_s"], rows["state"], rows["step"], strict=True)
-        events = tuple(EventRow(str(name), float(time), state, int(step)) for name, time, state, step in columns)
+        try:
+            columns = zip(rows["name"], rows["time_s"], rows["state"], rows["step"], strict=True)
+            events = tuple(EventRow(str(name), float(time), state, int(step)) for name, time, state, step in columns)
+        except (KeyError, ValueError, TypeError):
+            raise RecordingError(f"{path} was not written by `sailviz export --to npz`: its events are none") from None
     steps, times = values["state.step"], values["state.time_s"]
 
     def table(entity: str) -> Table:

@@ -1,4 +1,4 @@
-"""The three ways in which a run can fail, each carrying a sentence for the person who reads it."""
+"""The ways in which a run can fail, each carrying a sentence for the person who reads it."""
 
 from __future__ import annotations
 
@@ -81,6 +81,10 @@ class PropagationError(SailvizError):
             f"{reason} at t = {time:.6g} s ({time / 86400:.4g} d), "
             f"position ({r}) m, velocity ({v}) m/s, mass {state[6]:.6g} kg"
         )
+
+
+class TimeLimitError(SailvizError):
+    """The wall time that was allowed is over, in one sentence that says how far the work had come."""
 
 
 class RecordingError(SailvizError):

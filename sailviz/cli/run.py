@@ -19,9 +19,10 @@ from sailviz.cli.shared import (
     say_if_compiling,
     scenes_argument,
     set_option,
+    time_limit_option,
     values_of,
 )
-from sailviz.errors import PropagationError
+from sailviz.errors import PropagationError, TimeLimitError
 
 if TYPE_CHECKING:
     from sailviz.checks import Verdict
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 @click.option(
     "--connect", metavar="URL", help="Send it to a viewer that runs already, e.g. rerun+http://host:9876/proxy."
 )
+@time_limit_option("End each scene after so much wall time; what was recorded until then stays.")
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
 @click.option("--json", "as_json", is_flag=True, help="Print a summary that a script can read.")
 def run(
@@ -50,6 +52,7 @@ def run(
     view: bool,
     web: bool,
     connect: str | None,
+    time_limit: float | None,
     quiet: bool,
     as_json: bool,
 ) -> None:
@@ -70,7 +73,7 @@ def run(
         for name in scenes:
             with failures.next(name):
                 sinks = _sinks(name, output, view, web, connect)
-                _run_one(name, values, sinks, quiet, failures)
+                _run_one(name, values, sinks, quiet, failures, time_limit)
 
 
 def _sinks(name: str, output: str | None, view: bool, web: bool, connect: str | None) -> Callable[[], list[Any]]:
@@ -100,7 +103,12 @@ def _sinks(name: str, output: str | None, view: bool, web: bool, connect: str | 
 
 
 def _run_one(
-    name: str, values: dict[str, Any], sinks: Callable[[], list[Any]], quiet: bool, failures: Failures
+    name: str,
+    values: dict[str, Any],
+    sinks: Callable[[], list[Any]],
+    quiet: bool,
+    failures: Failures,
+    time_limit: float | None,
 ) -> None:
     from sailviz.scene import load_scene
 
@@ -109,7 +117,7 @@ def _run_one(
 
     say_if_compiling(quiet)
     judge = Judge(scene)
-    recorder, rows, ended = _flown(scene, sinks, judge.add, quiet)
+    recorder, rows, ended = _flown(scene, sinks, judge.add, quiet, time_limit)
     recorded = recorder.finish()
     verdicts = judge.verdicts()
     facts = {
@@ -137,13 +145,17 @@ def _run_one(
 
 
 def _flown(
-    scene: Scene, sinks: Callable[[], list[Any]], judge: Callable[..., None], quiet: bool
+    scene: Scene,
+    sinks: Callable[[], list[Any]],
+    judge: Callable[..., None],
+    quiet: bool,
+    time_limit: float | None,
 ) -> tuple[Recorder, int, str]:
     """Fly, record and judge a scene block by block -> (recorder that is finished, rows, what ended the run)."""
     from sailviz.simulation import simulate_blocks
 
     with progress_bar(scene.title, quiet) as progress:
-        blocks = simulate_blocks(scene, progress=progress)
+        blocks = simulate_blocks(scene, progress=progress, time_limit=time_limit)
         block: Run | None = next(blocks)  # an infeasible scene fails here, before a recording is begun
         from sailviz.recording import Recorder
 
@@ -155,7 +167,7 @@ def _flown(
                     judge(block)
                     rows, ended = rows + len(block), block.ended
                     block = next(blocks, None)
-            except (KeyboardInterrupt, PropagationError):
+            except (KeyboardInterrupt, PropagationError, TimeLimitError):
                 recorder.__exit__(*sys.exc_info())  # finish the file with what there is
                 _say_unfinished(recorder)
                 raise

@@ -1,7 +1,7 @@
 """What commands share: arguments, settings as KEY=VALUE, a progress bar, messages and exit codes.
 
-0 all went well, 1 an expectation or a picture failed, 2 bad input, 3 the propagation failed, 4 a fault of sailviz
-itself, 130 interrupted, 141 nobody reads what is printed.
+0 all went well, 1 an expectation or a picture failed, 2 bad input or the time limit, 3 the propagation failed, 4 a
+fault of sailviz itself, 130 interrupted, 141 nobody reads what is printed.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from typing import Any
 
 import click
 
-from sailviz.errors import PropagationError, RecordingError, SceneError
+from sailviz.errors import PropagationError, RecordingError, SceneError, TimeLimitError
 
 EXPECTATION_FAILED, BAD_INPUT, RUN_FAILED, UNFORESEEN, INTERRUPTED, UNREAD = 1, 2, 3, 4, 130, 141
 LONGEST_WORD, LONGEST_LINE = 300, 2000  # letters of a message; what is longer was given by accident
@@ -30,6 +30,18 @@ set_option = click.option(
     metavar="KEY=VALUE",
     help="Put a value over the scene's, e.g. propagation.duration_yr=1.",
 )
+
+
+def time_limit_option(help: str) -> Callable[[Any], Any]:
+    """--time-limit, in seconds."""
+    kind = click.FloatRange(0, 1e9, min_open=True)
+    return click.option("--time-limit", type=kind, callback=_a_number, metavar="SECONDS", help=help)
+
+
+def _a_number(context: click.Context, option: click.Parameter, value: float | None) -> float | None:
+    if value is not None and value != value:
+        raise click.BadParameter("nan is not a number of seconds")
+    return value
 
 
 def values_of(settings: Iterable[str]) -> dict[str, Any]:
@@ -109,6 +121,8 @@ class Failures:
             yield
         except SceneError as error:
             self._tell(name, error, BAD_INPUT)
+        except TimeLimitError as error:
+            self._tell(name, error, BAD_INPUT)
         except (PropagationError, RecordingError) as error:
             self._tell(name, error, RUN_FAILED if isinstance(error, PropagationError) else BAD_INPUT)
 
@@ -116,7 +130,7 @@ class Failures:
         self.worst(code)
         if self.as_json:
             self.summaries.append({"scene": name, "error": said(error)})
-        tell(f"{name}: {error}" if isinstance(error, PropagationError) else error)
+        tell(f"{name}: {error}" if isinstance(error, (PropagationError, TimeLimitError)) else error)
 
 
 @contextmanager

@@ -22,9 +22,10 @@ from sailviz.cli.shared import (
     say_if_compiling,
     set_option,
     tell,
+    time_limit_option,
     values_of,
 )
-from sailviz.errors import RecordingError, SailvizError, SceneError
+from sailviz.errors import RecordingError, SailvizError, SceneError, TimeLimitError
 
 if TYPE_CHECKING:
     from sailviz.sweeps import Sweep
@@ -66,6 +67,7 @@ ENDINGS = (".parquet", ".csv", "")
     help="processes, threads, serial, dask (a cluster on this machine) or dask://HOST:PORT.",
 )
 @click.option("--workers", type=click.IntRange(1, 1024), metavar="N", help="As many as there are cores by default.")
+@time_limit_option("End the whole sweep after so much wall time; flights that are done stay.")
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
 @click.option("--json", "as_json", is_flag=True, help="Print a summary that a script can read.")
 def sweep(
@@ -80,6 +82,7 @@ def sweep(
     output: str | None,
     engine: str,
     workers: int | None,
+    time_limit: float | None,
     quiet: bool,
     as_json: bool,
 ) -> None:
@@ -100,10 +103,13 @@ def sweep(
 
         say_if_compiling(quiet)
         with _progress(path.stem, definition.flights, quiet) as progress:
-            found = fly_all(definition, [*wanted, *_listed(record)], None, engine, workers, path, progress)
+            found = fly_all(definition, [*wanted, *_listed(record)], None, engine, workers, path, progress, time_limit)
     except KeyboardInterrupt:
-        _say_interrupted(path)
+        _say_unfinished("Interrupted", path)
         sys.exit(INTERRUPTED)
+    except TimeLimitError as error:
+        _say_unfinished(str(error), path)
+        sys.exit(BAD_INPUT)
     except (SceneError, RecordingError, OSError) as error:
         tell(error)
         sys.exit(BAD_INPUT)
@@ -156,7 +162,7 @@ def _progress(title: str, flights: int, quiet: bool) -> Iterator[Callable[[int, 
         yield progress
 
 
-def _say_interrupted(path: Path) -> None:
+def _say_unfinished(why: str, path: Path) -> None:
     from sailviz.sweeps.loop import parquet_of
 
     rows = 0
@@ -165,7 +171,7 @@ def _say_interrupted(path: Path) -> None:
 
         rows = pq.read_metadata(parquet_of(path)).num_rows
     where = f"{path} holds the {rows:,} flights that are done" if rows else "no flight was done yet"
-    click.echo(f"Interrupted: {where}. The same command goes on from there.", err=True)
+    click.echo(f"{why}: {where}. The same command goes on from there.", err=True)
 
 
 def _statistics(found: Sweep, definition: Definition) -> dict[str, dict[str, Number | int]]:

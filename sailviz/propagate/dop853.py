@@ -27,6 +27,7 @@ from sailviz.propagate.stepping import (
     IN_USE,
     INTERVAL,
     NEW,
+    PAUSED,
     REJECTED,
     STARTED,
     STATUS,
@@ -39,6 +40,7 @@ from sailviz.propagate.stepping import (
     begin,
     close_block,
     happenings,
+    in_pieces,
     next_edge,
     next_limit,
     open_block,
@@ -261,7 +263,7 @@ def next_step(h, landing, rejected, wish, error):
     return max(h * grow, wish) if landing and not rejected else h * grow
 
 
-def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step) -> int:
+def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step, patience=None) -> int:
     """Integrate until every row of the block is filled, or until something ends the run. Returns a status.
 
     s : Integration, changed in place. model : Model. breaks (k,), factors (k,) : the thrust factor is factors[i]
@@ -269,17 +271,17 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
     or 7, n) : position, velocity and, with seven rows, mass. t_end : end of the whole run. tolerance : relative, per
     step. largest_step : s. DONE: block full; EVENTS_FULL: drain them and call again with the same block; STOPPED by
     an event, or SURFACE, the craft touched the body: rows up to time(s) are filled, in this block and those before;
-    UNDERFLOW or NOT_FINITE: the integration broke down at time(s).
+    UNDERFLOW or NOT_FINITE: the integration broke down at time(s). patience : Patience of this and other calls; where
+    it ends, so does the integration, with its status: NO_PROGRESS, TOO_MANY steps or TIME_IS_UP. Ctrl-C is heard.
     """
-    return advance_compiled(
-        *s, model.parameters, breaks, factors, *watch, t_out, out, float(t_end), float(tolerance), float(largest_step)
-    )
+    numbers = float(t_end), float(tolerance), float(largest_step)
+    return in_pieces(advance_compiled, s, model, (breaks, factors, *watch, t_out, out, *numbers), t_end, patience)
 
 
 @compiled
 def advance_compiled(
     work, count, sign, event, parameters, breaks, factors,
-    kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step,
+    kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step, pause,
 ):  # fmt: skip
     """`advance` with its tuples taken apart: at the border of compiled code whole tuples would cost 6 us more."""
     s = Integration(work, count, sign, event)
@@ -306,6 +308,9 @@ def advance_compiled(
             break
         if count[EVENTS] > MOST_EVENTS:
             count[STATUS] = EVENTS_FULL
+            break
+        if count[STEPS] + count[REJECTED] >= pause:
+            count[STATUS] = PAUSED
             break
         # one accepted step, landing on the next kink of the thrust or of other forces, or on the end
         limit = target = next_limit(breaks, interval, t_end)

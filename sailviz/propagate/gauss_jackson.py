@@ -64,6 +64,8 @@ from sailviz.propagate.stepping import (
     INTERVAL,
     MOST_EVENTS,
     NEW,
+    PAUSED,
+    REJECTED,
     STARTED,
     STATUS,
     STEP,
@@ -75,6 +77,7 @@ from sailviz.propagate.stepping import (
     begin,
     close_block,
     happenings,
+    in_pieces,
     next_limit,
     open_block,
     rows_until,
@@ -108,7 +111,7 @@ def start(t, position, velocity, mass, events=0, refinement=1.0) -> Multistep:
     return Multistep(work, count, np.zeros(events), event, np.zeros((HISTORY, 4)), grid)
 
 
-def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step) -> int:
+def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step, patience=None) -> int:
     """Integrate until every row of the block is filled, or until something ends the run: as dop853.advance, in every
     argument and status. tolerance : of the DOP853 steps, which take 1e-14 at most. ValueError for a thruster that
     loses mass."""
@@ -116,15 +119,14 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
         raise ValueError(
             "the Gauss-Jackson integrator keeps the mass constant; a thruster with a specific impulse does not."
         )
-    return advance_compiled(
-        *s, model.parameters, breaks, factors, *watch, t_out, out, float(t_end), float(tolerance), float(largest_step)
-    )
+    numbers = float(t_end), float(tolerance), float(largest_step)
+    return in_pieces(advance_compiled, s, model, (breaks, factors, *watch, t_out, out, *numbers), t_end, patience)
 
 
 @compiled
 def advance_compiled(
     work, count, sign, event, history, grid, parameters, breaks, factors,
-    kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step,
+    kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step, pause,
 ):  # fmt: skip
     """`advance` with its tuples taken apart."""
     s = Integration(work, count, sign, event)
@@ -152,6 +154,9 @@ def advance_compiled(
             break
         if count[EVENTS] > MOST_EVENTS:
             count[STATUS] = EVENTS_FULL
+            break
+        if count[STEPS] + count[REJECTED] >= pause:
+            count[STATUS] = PAUSED
             break
         limit = next_limit(breaks, interval, t_end)
 

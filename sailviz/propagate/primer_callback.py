@@ -9,38 +9,50 @@ from __future__ import annotations
 import numpy as np
 from numba import carray
 
-from sailviz.compiled import STATE, called, compiled
+from sailviz.compiled import STATE, called, compiled, inlined
 from sailviz.propagate.callbacks import Callback, callback
 from sailviz.propagate.parameters import array_at
 from sailviz.steering import attitude
 from sailviz.steering.optimal import steer, towards_primer
-from sailviz.steering.primers import locally_optimal_primer, lyapunov_primer
+from sailviz.steering.primers import EDGE, locally_optimal_primer, locally_optimal_readiness, lyapunov_primer, readiness
 
 
 @called
 def primer(t, x, y, z, vx, vy, vz, p, tables):
-    """The vector along which the law wants the most thrust, of any length; inertial."""
+    """The vector along which the law wants the most thrust, of any length, inertial; and the share of it that the law
+    wants."""
     kind = p.primer.kind
     if kind == attitude.LOCAL:
         lx, ly, lz = locally_optimal_primer(p.local.goal, x, y, z, vx, vy, vz, p.primer.mu)
         sense = p.local.sense
-        return sense * lx, sense * ly, sense * lz
+        ready = locally_optimal_readiness(p.local.goal, sense, x, y, z, vx, vy, vz, p.primer.mu)
+        return sense * lx, sense * ly, sense * lz, ready
     if kind == attitude.LYAPUNOV:
         return lyapunov_primer(x, y, z, vx, vy, vz, p.primer.mu, tables, p.places.steering)
-    return attitude.table_row(t, tables, p.places.steering, p.table.rows, p.table.interpolation)
+    lx, ly, lz = attitude.table_row(t, tables, p.places.steering, p.table.rows, p.table.interpolation)
+    return lx, ly, lz, 1.0
+
+
+@inlined
+def throttle(h, ready, p):
+    """Of a law that finds h along its primer: 1 or 0 from a table, and with soft edges where the state steers."""
+    if h <= 0.0:
+        return 0.0
+    return 1.0 if p.primer.kind == attitude.PRIMER else ready * readiness(h / EDGE)
 
 
 @called
 def normal(t, x, y, z, vx, vy, vz, p, tables):
-    """(unit sail normal, 1.0 or 0.0 for thrust on or off) of the law."""
-    lx, ly, lz = primer(t, x, y, z, vx, vy, vz, p, tables)
+    """(unit sail normal, throttle) of the law."""
+    lx, ly, lz, ready = primer(t, x, y, z, vx, vy, vz, p, tables)
     inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
     ux, uy, uz = x * inverse, y * inverse, z * inverse
-    return towards_primer(p.primer.sail, tables, p.places.sail, ux, uy, uz, lx, ly, lz)
+    nx, ny, nz, h = towards_primer(p.primer.sail, tables, p.places.sail, ux, uy, uz, lx, ly, lz)
+    return nx, ny, nz, throttle(h, ready, p)
 
 
 def _normal(time, state, parameters, own, number, out):
-    """The normal and whether to thrust."""
+    """The normal and the throttle."""
     p = carray(parameters, (1,))[0]
     y, tables, n = carray(state, (STATE,)), array_at(p.places.address, p.places.end), carray(out, (4,))
     n[0], n[1], n[2], n[3] = normal(time, y[0], y[1], y[2], y[3], y[4], y[5], p, tables)
@@ -59,14 +71,15 @@ def observe_primer(time, states, parameters):
     tables = array_at(p.places.address, p.places.end)
     out, support = np.empty((len(time), 3)), np.empty(len(time))
     for i in range(len(time)):
-        s = states[:, i]
-        lx, ly, lz = primer(time[i], s[0], s[1], s[2], s[3], s[4], s[5], p, tables)
+        y = states[:, i]
+        lx, ly, lz, ready = primer(time[i], y[0], y[1], y[2], y[3], y[4], y[5], p, tables)
         size = np.sqrt(lx * lx + ly * ly + lz * lz)
         if size == 0.0:
             out[i, :], support[i] = 0.0, 0.0
             continue
         out[i, 0], out[i, 1], out[i, 2] = lx / size, ly / size, lz / size
-        r = np.sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
-        c = min(max((out[i, 0] * s[0] + out[i, 1] * s[1] + out[i, 2] * s[2]) / r, -1.0), 1.0)
-        support[i] = steer(p.primer.sail, tables, p.places.sail, c, np.sqrt(1.0 - c * c), 0.0)[2]
+        r = np.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
+        c = min(max((out[i, 0] * y[0] + out[i, 1] * y[1] + out[i, 2] * y[2]) / r, -1.0), 1.0)
+        h = steer(p.primer.sail, tables, p.places.sail, c, np.sqrt(1.0 - c * c), 0.0)[2]
+        support[i] = h * throttle(h, ready, p)
     return out, support

@@ -14,12 +14,17 @@ from sailviz.compiled import compiled, inlined
 from sailviz.propagate.callbacks import call
 from sailviz.propagate.dynamics import SIZE
 from sailviz.propagate.events import APSIS, END_OF_USE, RADIUS, STOP, measure
+from sailviz.propagate.patience import GOES_ON, Patience
+from sailviz.propagate.patience import NO_PROGRESS as NO_PROGRESS
+from sailviz.propagate.patience import TIME_IS_UP as TIME_IS_UP
+from sailviz.propagate.patience import TOO_MANY as TOO_MANY
 
 EVENT_SAMPLES = 4  # at most per step, so that two crossings inside one step are seen
 MOST_EVENTS = 4096  # recorded between two calls, and then those of one more step
 
 # status of `advance`
 DONE, STOPPED, EVENTS_FULL, UNDERFLOW, NOT_FINITE, SURFACE = range(6)
+PAUSED = 6  # of compiled code alone: it has to be called again; what else there is says patience.py
 
 # rows of Integration.work after the sixteen stages; one array, so that the optimiser knows that they do not overlap
 Y, W, NEW = 16, 17, 18  # state at the start of the step, a state to evaluate, state at its end
@@ -75,6 +80,24 @@ def rows_done(s) -> int:
 def statistics(s) -> tuple[int, int]:
     """Accepted and rejected steps so far."""
     return int(s.counter[STEPS]), int(s.counter[REJECTED])
+
+
+def in_pieces(compiled_advance, s, model, arguments, t_end, patience: Patience | None) -> int:
+    """Let compiled code integrate, piece after piece, until it is done or patience ends. Returns a status.
+
+    compiled_advance : takes s, the parameters, the arguments and the number of tried steps after which it pauses.
+    """
+    patience = Patience() if patience is None else patience
+    own = bool(model.parameters["callbacks"]["user_steering"][0] or model.parameters["callbacks"]["user_force"][0])
+    count = s.counter
+    while True:
+        pause = patience.begin_piece(int(count[STEPS] + count[REJECTED]), own)
+        status = compiled_advance(*s, model.parameters, *arguments, pause)
+        if status != PAUSED:
+            return int(status)
+        status = patience.end_piece(int(count[STEPS] + count[REJECTED]), time(s), t_end)
+        if status != GOES_ON:
+            return status
 
 
 @inlined
@@ -241,7 +264,7 @@ def begin(s, watch, breaks, factors, p):
 def open_block(count):
     """(row at which this block goes on, whether the run has ended in a step of which rows are still to be filled)."""
     row = 0
-    if count[STATUS] == EVENTS_FULL:
+    if count[STATUS] == EVENTS_FULL or count[STATUS] == PAUSED:
         row = count[ROW]
     ended = count[STATUS] == STOPPED or count[STATUS] == SURFACE
     if not ended:

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import rerun as rr
 
-from sailviz.errors import OutputError, PropagationError, RecordingError
+from sailviz.errors import OutputError, PropagationError, RecordingError, TimeLimitError
 from sailviz.files import Output, lacking, reason
 from sailviz.recording import checksums, contract, timelines
 from sailviz.recording.drain import Drain
@@ -190,6 +190,6 @@ def why(error: BaseException | None, last: Run) -> str:
     """Why a recording ends at its last row, for the event that says so."""
     if isinstance(error, KeyboardInterrupt):
         return f"interrupted at t = {last.time[0]:.6g} s ({last.time[0] / 86400:.4g} d)"
-    if isinstance(error, PropagationError):
+    if isinstance(error, (PropagationError, TimeLimitError)):
         return str(error)
     return f"stopped by {type(error).__name__}: {error}"

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from time import perf_counter
 from typing import Any
 
 import numpy as np
 
 from sailviz import elements as orbital
 from sailviz import frames
-from sailviz.errors import PropagationError
+from sailviz.constants import DAY
+from sailviz.errors import PropagationError, TimeLimitError
 from sailviz.propagate import dop853, dynamics, gauss_jackson, stepping
 from sailviz.propagate.choice import DOP853, GAUSS_JACKSON
+from sailviz.propagate.patience import Patience
 from sailviz.propulsion.devices import CALLED, THRUSTER
 from sailviz.run.arrays import Attitude, EnsembleStatistics, Event, Run, Setting, Thrust, join
 from sailviz.scene.loading import SceneSource, load_scene
 from sailviz.scene.sections import Propagation
 from sailviz.simulation.environment_columns import observe, voltages
 from sailviz.simulation.metadata import bodies, planets_in_view, setting_of
+from sailviz.simulation.no_progress import too_many, too_short, too_slow
 from sailviz.simulation.plan import Plan, plan
 
 BLOCK_ROWS = 16_384  # a recording takes this many at once
@@ -26,7 +30,9 @@ DEFAULT_OUTPUTS = 1000
 INTEGRATORS = {DOP853: dop853, GAUSS_JACKSON: gauss_jackson}
 
 
-def simulate(scene: SceneSource, *, steering: object = None, force: object = None) -> Run:
+def simulate(
+    scene: SceneSource, *, steering: object = None, force: object = None, time_limit: float | None = None
+) -> Run:
     """Propagate a scene and return the whole Run.
 
     scene : a Scene, or what `load_scene` takes: a path, a shipped name ("displaced/circular") or a dict.
@@ -34,10 +40,10 @@ def simulate(scene: SceneSource, *, steering: object = None, force: object = Non
     steering : own attitude law, force : own additional acceleration in m/s2; each a numba.cfunc of
     sailviz.propagate.callbacks.USER_SIGNATURE or an @njit function (t, x, y, z, vx, vy, vz, m) -> three floats, SI,
     inertial. The law's direction may have any length and is made a unit vector; a zero vector is a stowed sail, without
-    thrust. Raises SceneError if the scene asks for something infeasible, PropagationError if the integration
-    breaks down.
+    thrust. time_limit : s of wall time. Raises SceneError if the scene asks for something infeasible, PropagationError
+    if the integration breaks down or does not get on, TimeLimitError if the time is over.
     """
-    return join(list(simulate_blocks(scene, steering=steering, force=force)))
+    return join(list(simulate_blocks(scene, steering=steering, force=force, time_limit=time_limit)))
 
 
 def simulate_blocks(
@@ -48,14 +54,21 @@ def simulate_blocks(
     block_rows: int = BLOCK_ROWS,
     progress: Callable[[float], None] | None = None,
     drawn: bool = True,
+    time_limit: float | None = None,
 ) -> Iterator[Run]:
     """Like `simulate`, but yields Runs of at most block_rows rows as they are computed; memory stays flat.
 
     The rows do not depend on block_rows. progress is called with the fraction of the duration that is done. Before a
-    PropagationError is raised, the rows up to it are yielded. Without drawn, planets and other bodies that a picture
-    shows beside the craft are left out, which saves half of a short flight.
+    PropagationError or a TimeLimitError is raised, the rows up to it are yielded; the time counts from here. Without
+    drawn, planets and other bodies that a picture shows beside the craft are left out, which saves half of a short
+    flight.
     """
-    return _blocks(plan(load_scene(scene), steering, force), block_rows, progress or (lambda fraction: None), drawn)
+    if time_limit is not None and not time_limit > 0.0:
+        raise ValueError(f"the time limit must be a positive number of seconds, not {time_limit:g}")
+    until = perf_counter() + (np.inf if time_limit is None else time_limit)
+    planned = plan(load_scene(scene), steering, force)
+    patience = Patience(planned.scene.limits.integration_steps, until)
+    return _blocks(planned, block_rows, progress or (lambda fraction: None), drawn, patience, time_limit or np.inf)
 
 
 def _grid(run: Propagation) -> tuple[int, float]:
@@ -89,13 +102,17 @@ class OutputTimes:
         return times
 
 
-FAILURES = {
-    stepping.UNDERFLOW: "The step size fell below the resolution of time",
-    stepping.NOT_FINITE: "The acceleration is not a finite number",
+FAILURES: dict[int, Callable[[Plan, Any, Patience], str]] = {
+    stepping.UNDERFLOW: lambda p, state, patience: too_short(p, state),
+    stepping.NOT_FINITE: lambda p, state, patience: "The acceleration is not a finite number",
+    stepping.TOO_MANY: lambda p, state, patience: too_many(p, patience),
+    stepping.NO_PROGRESS: lambda p, state, patience: too_slow(p, state, patience, INTEGRATORS[p.choice.integrator]),
 }
 
 
-def _blocks(p: Plan, block_rows: int, progress: Callable[[float], None], drawn: bool) -> Iterator[Run]:
+def _blocks(
+    p: Plan, block_rows: int, progress: Callable[[float], None], drawn: bool, patience: Patience, time_limit: float
+) -> Iterator[Run]:
     output = OutputTimes(p.scene.propagation)
     ensembles = _ensembles(p, output) if drawn or any(item.ensemble for item in p.scene.expect) else ()
     state = INTEGRATORS[p.choice.integrator].start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
@@ -107,7 +124,7 @@ def _blocks(p: Plan, block_rows: int, progress: Callable[[float], None], drawn: 
         times = output.between(first, min(block_rows, output.rows - first))
         due = [switch for switch in switches if switch[0] <= times[-1]]
         del switches[: len(due)]
-        filled = _fill(p, state, times, due, output.rows, progress)
+        filled = _fill(p, state, times, due, output.rows, progress, patience)
         if not stepping.in_use(state):
             off_time = min([off_time] + [event.time for event in filled.events if event.name == "brake off"])
         ended = _ending(p, state, filled.status)
@@ -125,8 +142,14 @@ def _blocks(p: Plan, block_rows: int, progress: Callable[[float], None], drawn: 
                 events=tuple(filled.events),
                 ended=ended,
             )
+        if filled.status == stepping.TIME_IS_UP:
+            reached, wanted = stepping.time(state) / DAY, p.scene.propagation.duration / DAY
+            raise TimeLimitError(
+                f"the time limit of {time_limit:g} s is over: the flight had reached {reached:.4g} of {wanted:.4g} d"
+            )
         if filled.status in FAILURES:
-            raise PropagationError(FAILURES[filled.status], stepping.time(state), stepping.state(state))
+            now = stepping.time(state), stepping.state(state)
+            raise PropagationError(FAILURES[filled.status](p, state, patience), *now)
         if filled.status != stepping.DONE:
             break
     progress(1.0)
@@ -174,6 +197,7 @@ def _fill(
     switches: list[tuple[float, str]],
     output_rows: int,
     progress: Callable[[float], None],
+    patience: Patience,
 ) -> Filled:
     """One block. Switching times are computed along with the rows."""
     run = p.scene.propagation
@@ -198,17 +222,22 @@ def _fill(
                 run.duration,
                 run.tolerance,
                 run.largest_step or np.inf,
+                patience,
             )
             found += [
                 Event("impact" if index < 0 else p.names[index], time, y)
                 for index, time, y in stepping.drain_events(state)
             ]
+            if status == stepping.EVENTS_FULL and patience.time_is_up():
+                status = stepping.TIME_IS_UP
             if status != stepping.EVENTS_FULL:
                 break
         done = stepping.rows_done(state)
         out[:, first : first + done] = chunk[:, :done]
         filled = first + done
         progress(stepping.time(state) / run.duration)
+        if status == stepping.DONE and patience.time_is_up() and first + piece < len(moments):
+            status = stepping.TIME_IS_UP
         if status != stepping.DONE:
             break
     moments, out = moments[:filled], out[:, :filled]

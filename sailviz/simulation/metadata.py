@@ -14,6 +14,7 @@ from sailviz import ephemeris
 from sailviz.environment import ionosphere
 from sailviz.propagate import dop853
 from sailviz.propagate.choice import GAUSS_JACKSON
+from sailviz.propagate.patience import Patience
 from sailviz.run.arrays import Reference, Setting, Shell
 from sailviz.scene.start import DesignedStart
 from sailviz.simulation.bodies import epoch_of
@@ -24,6 +25,7 @@ from sailviz.simulation.plan import Plan
 from sailviz.simulation.start import departure
 from sailviz.simulation.steering import steering_of
 
+MOST_STEPS_AHEAD = 300_000  # of the coarse run that tells which planets come into view
 SHELL_ANGLES, SHELL_STEP = 120, 25e3  # round the orbit; m between altitudes
 
 
@@ -151,11 +153,12 @@ def planets_in_view(p: Plan) -> dict[str, np.ndarray]:
 
 def _farthest(p: Plan) -> float:
     """Largest distance from the centre, m, from a coarse run ahead: a millisecond, and the same for blocks of any
-    size."""
+    size. What would take long is told by its beginning."""
     times = np.linspace(0.0, p.scene.propagation.duration, 256)
     out = np.empty((6, len(times)))
     state = dop853.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
-    dop853.advance(state, p.model, p.schedule.breaks, p.schedule.factors, p.watch, times, out, times[-1], 1e-7, np.inf)
+    arguments = p.schedule.breaks, p.schedule.factors, p.watch, times, out, times[-1]
+    dop853.advance(state, p.model, *arguments, 1e-7, np.inf, Patience(MOST_STEPS_AHEAD))
     return float(np.linalg.norm(out[:3, : dop853.rows_done(state)], axis=0).max())
 
 

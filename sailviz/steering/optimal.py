@@ -260,7 +260,8 @@ def _across(ux, uy, uz, lx, ly, lz):
 
 @inlined
 def towards_primer(device, p, at, ux, uy, uz, lx, ly, lz):
-    """Sail normal n and 1.0 or 0.0 for thrust on or off, for a primer vector l of any length; u = r_hat.
+    """Sail normal n and h, the thrust along a primer vector l of any length as a share of the full one, 0 for thrust
+    off; u = r_hat.
 
     A vanished primer asks for no thrust: off, and edge-on to the Sun.
     """
@@ -268,8 +269,7 @@ def towards_primer(device, p, at, ux, uy, uz, lx, ly, lz):
     if c == 0.0 and s == 0.0:
         return tx, ty, tz, 0.0
     along, across, h, _, _ = steer(device, p, at, c, s, 0.0)
-    on = 1.0 if h > 0.0 else 0.0
-    return along * ux + across * tx, along * uy + across * ty, along * uz + across * tz, on
+    return along * ux + across * tx, along * uy + across * ty, along * uz + across * tz, max(h, 0.0)
 
 
 @inlined
@@ -285,7 +285,7 @@ def analytic_film(b1, b2, c, s):
 
 @inlined
 def towards_primer_analytic(p, at, ux, uy, uz, lx, ly, lz):
-    """`towards_primer` of a film by the analytic law."""
+    """`towards_primer` of a film by the analytic law, with 1.0 or 0.0 for thrust on or off."""
     c, s, tx, ty, tz = _across(ux, uy, uz, lx, ly, lz)
     if c == 0.0 and s == 0.0:
         return tx, ty, tz, 0.0

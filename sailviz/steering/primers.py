@@ -3,6 +3,12 @@
 A sail steered to the most thrust along such a primer changes the element at the best rate of that moment,
 a_c (r_E / r)^k |primer| h. Gauss' equations in vector form; source: thesis, chapter 6, of which the text was not
 readable: re-derived, checked against differences of the elements.
+
+Where the gradient vanishes its direction jumps, and where the thrust that is to be had along it does, the thrust
+jumps. A law may lead to such a place and hold there, and a sail that followed it would be thrown to and fro without
+end: at the bottom of a valley of the distance, on a circle that is to be round, in a plane that is to be level.
+Towards it the thrust fades (`readiness`): what a sail gives that follows the law for this share of the time and stands
+edge-on, or is off, for the rest.
 """
 
 from __future__ import annotations
@@ -23,7 +29,39 @@ GOALS = {
 # Places in the numbers of `lyapunov_primer`, in the first three groups of one element each: p, f, g, h, k
 TARGETS, WEIGHTS, SCALES, REACHED = 0, 5, 10, 15
 P, F, G, H, K = range(5)
+EDGE = 0.05  # share of the most that the gradient, or the thrust along it, could be, below which the thrust fades
+BAND = 0.1  # of the nearness that counts as reached: so far above it the thrust begins to fade
+ROUND, FLAT = 1e-3, 1e-3  # eccentricity, and inclination in rad, below which the thrust that lessens it fades
 SMALL = 1e-12  # an eccentricity, or sine of an inclination, below which there is no apsis or node
+
+
+@inlined
+def readiness(x):
+    """Share of the best thrust that a soft edge leaves at the place x of it, 0 at its bottom, 1 and level at its
+    rim."""
+    return 1.0 if x >= 1.0 else x * (2.0 - x)
+
+
+@inlined
+def locally_optimal_readiness(kind, sense, x, y, z, vx, vy, vz, mu):
+    """`readiness` of a locally optimal law. Only what lessens an eccentricity or an inclination may arrive; near the
+    reference plane the node, to which the side is tied to which to push, is carried along with the craft besides, and
+    so the thrust also fades a quarter of a turn from it."""
+    if sense > 0.0:
+        return 1.0
+    if kind == INCLINATION:
+        hx, hy, hz = y * vz - z * vy, z * vx - x * vz, x * vy - y * vx
+        across = np.sqrt(hx * hx + hy * hy)
+        if across < SMALL * abs(hz):
+            return 0.0
+        share = abs(x * hy - y * hx) / (across * np.sqrt(x * x + y * y + z * z))  # |cos u|
+        return readiness(np.arctan2(across, abs(hz)) / FLAT) * readiness(share / EDGE)
+    if kind == ECCENTRICITY:
+        along = (vx * vx + vy * vy + vz * vz) / mu - 1.0 / np.sqrt(x * x + y * y + z * z)
+        radial = (x * vx + y * vy + z * vz) / mu
+        ex, ey, ez = along * x - radial * vx, along * y - radial * vy, along * z - radial * vz
+        return readiness(np.sqrt(ex * ex + ey * ey + ez * ez) / ROUND)
+    return 1.0
 
 
 @inlined
@@ -92,7 +130,8 @@ def _pull(p, at, element, value):
 @inlined
 def lyapunov_primer(x, y, z, vx, vy, vz, mu, p, at):
     """-dV/d(velocity) of V = sum W_i ((x_i - T_i) / S_i)^2 over the modified equinoctial elements p, f, g, h, k,
-    inertial: the primer that brings the orbit towards the target elements.
+    inertial: the primer that brings the orbit towards the target elements; and the readiness of the law: from the
+    gradient's share of what it would be if the misses did not cancel each other, and from what is left to be done.
 
     p[at:] : targets T (5), weights W (5), scales S (5), and the V at which the target counts as reached: the primer
     then vanishes, for no thrust holds an orbit on a point. Prograde orbits: h and k grow without bound at 180 deg.
@@ -122,11 +161,14 @@ def lyapunov_primer(x, y, z, vx, vy, vz, mu, p, at):
     value = dp * off_p + df * off_f + dg * off_g
     value += dh * off_h + dk * off_k
     if value <= p[at + REACHED]:
-        return 0.0, 0.0, 0.0
+        return 0.0, 0.0, 0.0, 0.0
     tilt = (h * sin - k * cos) / w
     l_r = q * (df * sin - dg * cos)
     l_t = q * (2.0 * semi / w * dp + ((w + 1.0) * cos + f) / w * df + ((w + 1.0) * sin + g) / w * dg)
     l_h = q * (tilt * (f * dg - g * df) + 0.5 * s2 / w * (cos * dh + sin * dk))
     tx, ty, tz = wy * uz - wz * uy, wz * ux - wx * uz, wx * uy - wy * ux
     l_r, l_t, l_h = -2.0 * l_r, -2.0 * l_t, -2.0 * l_h
-    return l_r * ux + l_t * tx + l_h * wx, l_r * uy + l_t * ty + l_h * wy, l_r * uz + l_t * tz + l_h * wz
+    most = 2.0 * q * (2.0 * semi * abs(dp) + 2.0 * (abs(df) + abs(dg)) + 0.5 * s2 * (abs(dh) + abs(dk)))
+    ready = readiness(np.sqrt(l_r * l_r + l_t * l_t + l_h * l_h) / (EDGE * most))
+    ready *= readiness((np.sqrt(value / p[at + REACHED]) - 1.0) / BAND)
+    return l_r * ux + l_t * tx + l_h * wx, l_r * uy + l_t * ty + l_h * wy, l_r * uz + l_t * tz + l_h * wz, ready

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, CancelledError, Executor, Future, wait
+from math import inf
+from time import perf_counter
 from typing import Any
 
 import numpy as np
 
+from sailviz.errors import TimeLimitError
 from sailviz.sweeps.definition import Definition
 from sailviz.sweeps.engines import abandon, processes, workers_of
 from sailviz.sweeps.flight import DIED, blank, fly
@@ -66,7 +69,9 @@ class Dealer:
         executor: Executor | None,
         progress: Progress | None,
         workers: int | None = None,
+        time_limit: float | None = None,
     ):
+        self._time_limit, self._begun = time_limit, perf_counter()
         self._definition, self._store, self._progress = definition, store, progress
         self._own, self._workers = executor is None, workers
         self._pool = processes(workers) if executor is None else executor
@@ -77,15 +82,18 @@ class Dealer:
         self._any_done = False
 
     def deal(self) -> None:
-        """Fly everything. SweepError where the workers cannot be brought to it."""
+        """Fly everything. SweepError where the workers cannot be brought to it, TimeLimitError when the time is
+        over."""
         try:
             while True:
                 broken = self._hand_out()
                 if not self._pending and not broken:
                     break
-                finished, _ = wait(self._pending, timeout=1.0, return_when=FIRST_COMPLETED)
+                finished, _ = wait(self._pending, timeout=min(1.0, self._time_left()), return_when=FIRST_COMPLETED)
                 alone = len(self._pending) == 1
                 broken = self._take(finished) or broken
+                if self._time_left() <= 0.0 and not self._store.done.all():
+                    raise self._over()
                 if broken:
                     self._begin_anew(alone)
         except BaseException:
@@ -97,6 +105,16 @@ class Dealer:
         if self._own:
             self._pool.shutdown()
 
+    def _time_left(self) -> float:
+        """Wall time that is left, s."""
+        return inf if self._time_limit is None else self._time_limit - (perf_counter() - self._begun)
+
+    def _over(self) -> TimeLimitError:
+        done, asked = int(self._store.done.sum()), len(self._store.done)
+        return TimeLimitError(
+            f"the time limit of {self._time_limit:g} s is over: {done:,} of {asked:,} flights are done"
+        )
+
     def _hand_out(self) -> bool:
         """As many chunks as there is room for, suspects one by one. Whether the pool turned out to be broken."""
         room = 1 if self._suspects else AHEAD * self._count
@@ -105,7 +123,8 @@ class Dealer:
             if chunk is None:
                 break
             try:
-                self._pending[self._pool.submit(fly, self._definition, *chunk)] = chunk
+                limit = () if self._time_limit is None else (max(self._time_left(), 1e-9),)
+                self._pending[self._pool.submit(fly, self._definition, *chunk, *limit)] = chunk
             except BrokenExecutor:
                 self._suspects.append(chunk)
                 return True
@@ -122,6 +141,8 @@ class Dealer:
                 self._suspects.append(chunk)
                 broken = True
                 continue
+            except TimeLimitError:
+                raise self._over() from None
             self._store.add(rows)
             self._chunks.measured(rows)
             self._any_done = True

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import sailviz
-from sailviz.errors import PropagationError, SailvizError, SceneError
+from sailviz.errors import PropagationError, SailvizError, SceneError, TimeLimitError
 from sailviz.scene.loading import Scene
 from sailviz.sweeps.censoring import AT_LEAST, bounded, still_running
 from sailviz.sweeps.definition import Definition
@@ -58,15 +58,17 @@ def _cell(value: Any, kind: str) -> Any:
     return json.dumps(value, default=str) if isinstance(value, (list, dict)) else str(value)
 
 
-def fly(definition: Definition, first: int, stop: int) -> list[dict[str, Any]]:
-    """Rows of the flights first ... stop - 1. Raises only if this process runs another sailviz."""
+def fly(definition: Definition, first: int, stop: int, time_limit: float | None = None) -> list[dict[str, Any]]:
+    """Rows of the flights first ... stop - 1. Raises only if this process runs another sailviz, or TimeLimitError when
+    the flights together have taken time_limit s of wall time."""
     if definition.version != sailviz.__version__:
         raise SailvizError(f"a worker runs sailviz {sailviz.__version__}, this is {definition.version}")
     scene = _scenes.get(definition.identity)
     if scene is None:
         _scenes.clear()
         scene = _scenes[definition.identity] = definition.scene()
-    return [_row(definition, scene, flight) for flight in range(first, stop)]
+    until = None if time_limit is None else time.perf_counter() + time_limit
+    return [_row(definition, scene, flight, until) for flight in range(first, stop)]
 
 
 def blank(definition: Definition, flight: int) -> dict[str, Any]:
@@ -76,12 +78,14 @@ def blank(definition: Definition, flight: int) -> dict[str, Any]:
     return {"index": flight, **values, "seed": definition.seed_of(flight), "status": FAILED, "reason": "", "ended": ""}
 
 
-def _row(definition: Definition, scene: Scene, flight: int) -> dict[str, Any]:
+def _row(definition: Definition, scene: Scene, flight: int, until: float | None) -> dict[str, Any]:
     row = blank(definition, flight)
     began = time.perf_counter()
     flown: list[float] = []
     try:
-        row |= _measured(definition, scene.with_values(definition.values(flight)), flown)
+        row |= _measured(definition, scene.with_values(definition.values(flight)), flown, until)
+    except TimeLimitError:
+        raise
     except SceneError as error:
         row["reason"] = "; ".join(map(str, error.faults))
     except PropagationError as error:
@@ -93,14 +97,15 @@ def _row(definition: Definition, scene: Scene, flight: int) -> dict[str, Any]:
     return row
 
 
-def _measured(definition: Definition, scene: Scene, flown: list[float]) -> dict[str, Any]:
+def _measured(definition: Definition, scene: Scene, flown: list[float], until: float | None) -> dict[str, Any]:
     from sailviz.checks.expectations import Judge
     from sailviz.simulation import simulate_blocks
 
     reported = definition.reported()
     judge = Judge(scene.model_copy(update={"expect": [*scene.expect, *reported]}))
     ended = ""
-    for block in simulate_blocks(scene, drawn=False):
+    limit = None if until is None else max(until - time.perf_counter(), 1e-9)
+    for block in simulate_blocks(scene, drawn=False, time_limit=limit):
         judge.add(block)
         flown[:], ended = [float(block.time[-1])], block.ended
     verdicts = judge.verdicts()

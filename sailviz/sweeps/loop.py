@@ -40,6 +40,7 @@ def sweep(
     path: str | Path | None = None,
     record: Iterable[str | int] = (),
     progress: Callable[[int, int], None] | None = None,
+    time_limit: float | None = None,
 ) -> Sweep:
     """Fly a scene many times and return a row per flight.
 
@@ -51,12 +52,14 @@ def sweep(
     workers. path : table to write, parquet by its ending, or CSV beside such a one; an unfinished sweep of the same
     definition goes on from there. record : flights to record beside the table, by number or "min:COLUMN", "max:COLUMN",
     "median:COLUMN", "failed". progress : called with flights done and asked for.
+    time_limit : s of wall time for all flights together.
 
     A script that sweeps over processes needs `if __name__ == "__main__":` round it. Raises SceneError with every fault
-    of the definition, SweepError if path holds something else or cannot be written, or the executor breaks down.
+    of the definition, SweepError if path holds something else or cannot be written, or the executor breaks down,
+    TimeLimitError when the time is over: finished flights are kept as after Ctrl-C.
     """
     definition, wanted = define(scene, vary, draws, seed, tuple(report), together, values)
-    return fly_all(definition, [*wanted, *record], executor, engine, workers, path, progress)
+    return fly_all(definition, [*wanted, *record], executor, engine, workers, path, progress, time_limit)
 
 
 def fly_all(
@@ -67,6 +70,7 @@ def fly_all(
     workers: int | None = None,
     path: str | Path | None = None,
     progress: Callable[[int, int], None] | None = None,
+    time_limit: float | None = None,
 ) -> Sweep:
     """Like `sweep`, of a definition that was made and checked before."""
     engines.check_engine(engine)
@@ -80,10 +84,10 @@ def fly_all(
     if not store.done.all():
         try:
             if executor is not None:
-                Dealer(definition, store, executor, progress).deal()
+                Dealer(definition, store, executor, progress, time_limit=time_limit).deal()
             else:
                 with engines.engine(engine, workers) as made:
-                    Dealer(definition, store, made, progress, workers).deal()
+                    Dealer(definition, store, made, progress, workers, time_limit).deal()
         except BaseException:
             _finish(store, path)  # what is done stays, as a table
             raise

@@ -66,8 +66,11 @@ def draws(scene: Scene) -> Faults:
 
 
 def steps(scene: Scene) -> Faults:
-    """Rows of steering tables that laws and designs make, and legs of the first-order solution."""
+    """Steps of the integration, rows of steering tables that laws and designs make, legs of the first-order
+    solution."""
     found, start, whole = [], scene.start, scene.propagation.duration
+    shortest = whole / (scene.propagation.largest_step or whole)
+    found += too_many(scene, shortest, "integration_steps", "steps", "propagation.largest_step")
     if isinstance(scene.steering, SmoothedSteering):
         held = whole / scene.steering.hold
         found += too_many(scene, held, "steps", "held rows of steering", "steering.hold")

@@ -9,6 +9,7 @@ from independent.constants import MU_SUN, body
 from independent.designed_orbits import third_body
 from independent.devices import device
 from independent.low_orbit import air_drag, oblate
+from independent.primers import soft_edges
 from independent.steering import table
 from independent.thrust_history import schedule, smoothed
 from scipy.integrate import solve_ivp
@@ -105,6 +106,7 @@ def right_hand_side(scene, acceleration, factor, latest):
             share = factor * (table(scene.steering, throttle, min(t, latest)) if throttle else 1.0)
             if smooth is not None:
                 share *= smooth[2][np.searchsorted(smooth[0], min(t, latest), side="right") - 1]
+            share *= soft_edges(scene, min(t, latest), r, v)
             push, rate = acceleration(min(t, latest), r, v, mass)
             a, rate = a + share * push, share * rate
         return np.concatenate([v, a, [rate]])

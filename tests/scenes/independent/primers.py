@@ -153,4 +153,56 @@ def lyapunov_primer(scene, t, r, v):
     return -steepest(value, r, v)
 
 
+def ease(x):
+    """What a soft edge leaves of the thrust: a parabola from its bottom, 0, to its rim, 1."""
+    return 1 - (1 - min(x, 1.0)) ** 2
+
+
+def soft_edges(scene, t, r, v):
+    """The share of the best thrust that a law steered by the state uses; 1 of any other."""
+    law = scene.steering
+    if law is None or law.kind not in ("lyapunov", "locally-optimal"):
+        return 1.0
+    primer = PRIMERS[law.kind](scene, t, r, v)
+    size = np.linalg.norm(primer)
+    if size == 0:
+        return 0.0
+    angle = np.arccos(np.clip(r @ primer / np.linalg.norm(r) / size, -1, 1))
+    pitch = best_pitch(shape_of(scene), angle)
+    if pitch is None:
+        return 0.0
+    along, across = shape_of(scene)(pitch)
+    share = ease((np.cos(angle) * along + np.sin(angle) * across) / 0.05)
+    h = np.cross(r, v)
+    if law.kind == "locally-optimal":  # of the inclination
+        if law.sense == "increase":
+            return share
+        node = np.array([-h[1], h[0], 0.0]) / np.hypot(h[0], h[1])
+        share *= ease(abs(node @ r) / np.linalg.norm(r) / 0.05)
+        tilt = np.arctan2(np.hypot(h[0], h[1]), abs(h[2]))
+        return share * ease(tilt / 1e-3)
+    p, target = h @ h / MU_SUN, law.semi_major_axis * (1 - law.eccentricity**2)
+    longitude, tangent = law.raan + law.argument, np.tan(law.inclination / 2)
+    w = h / np.linalg.norm(h)
+    tilt = np.array([-w[1], w[0]]) / (1 + w[2])
+    s2 = 1 + tilt @ tilt
+    f_hat = np.array([1 + tilt[0] ** 2 - tilt[1] ** 2, 2 * tilt[0] * tilt[1], -2 * tilt[1]]) / s2
+    g_hat = np.array([2 * tilt[0] * tilt[1], 1 - tilt[0] ** 2 + tilt[1] ** 2, 2 * tilt[0]]) / s2
+    e = np.cross(v, h) / MU_SUN - r / np.linalg.norm(r)
+    misses = np.array(
+        [
+            p / target - 1,
+            e @ f_hat - law.eccentricity * np.cos(longitude),
+            e @ g_hat - law.eccentricity * np.sin(longitude),
+            tilt[0] - tangent * np.cos(law.raan),
+            tilt[1] - tangent * np.sin(law.raan),
+        ]
+    )
+    weights = np.array(law.weights)
+    pulls = np.abs(weights * misses) * [2 * p / target, 2, 2, s2 / 2, s2 / 2]
+    distance = np.sqrt(weights @ misses**2)
+    share *= ease(size / (0.05 * 2 * np.sqrt(p / MU_SUN) * pulls.sum()))
+    return share * ease((distance / law.within - 1) / 0.1)
+
+
 PRIMERS = {"optimal": optimal_primer, "locally-optimal": local_primer, "lyapunov": lyapunov_primer}

@@ -225,7 +225,7 @@ def _run_of(path: Path, side: str) -> Run:
         column("/state", "velocity_m_s"),
         normal=column("/attitude", "normal"),
         thrust=column("/thrust", "acceleration_m_s2"),
-        mass=column("/state", "mass_kg"),
+        mass=None if np.isnan(state["mass_kg"]).any() else column("/state", "mass_kg"),
         mu=facts["body_mu_m3_s2"],
         radius=facts.get("body_radius_m"),
         epoch=data.epoch,

@@ -132,8 +132,10 @@ class ArrayChecks:
             return self.refuse(f"{name}: shape {found.shape}, wanted {wanted}{turned}")
         return found
 
-    def mass(self, values: ArrayLike, rows: int | None) -> np.ndarray:
-        """(n,) kg from a number or a column."""
+    def mass(self, values: ArrayLike | None, rows: int | None) -> np.ndarray:
+        """(n,) kg from a number or a column; NaN from nothing."""
+        if values is None:
+            return np.full(rows or 1, np.nan)
         if np.asarray(values).dtype.kind == "b":
             return self.refuse(f"mass: {np.asarray(values).flat[0]} is a truth value, wanted a number or (n,)")
         found = self.array("mass", values, "a number or (n,)")
@@ -214,8 +216,10 @@ class ArrayChecks:
             else:
                 self.say(f"{argument}: number {i}, {brief(item)}, is no pair of a name and its values")
 
-    def events(self, events: Events, time: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> tuple[Event, ...]:
-        """Events with states, those between the rows read off a cubic."""
+    def events(
+        self, events: Events, time: np.ndarray, position: np.ndarray, velocity: np.ndarray, mass: np.ndarray
+    ) -> tuple[Event, ...]:
+        """Events with states, those between the rows read off a cubic, and the mass off a line."""
         found = []
         for item in self.items("events", events, Event):
             name, when = (item.name, item.time) if isinstance(item, Event) else item
@@ -226,15 +230,16 @@ class ArrayChecks:
                 self.say(f"events: {name!r} at {when!r} s is outside the run, {time[0]:.6g} to {time[-1]:.6g} s")
                 continue
             if isinstance(item, Event):
-                mine = self.array(f"events[{name!r}].state", item.state, "(7,)")
-                if mine is not NOTHING and mine.shape != (7,):
-                    self.say(f"events[{name!r}].state: shape {mine.shape}, wanted (7,)")
+                if np.shape(item.state) != (7,):
+                    self.say(f"events[{name!r}].state: shape {np.shape(item.state)}, wanted (7,)")
+                else:
+                    self.array(f"events[{name!r}].state", item.state[:6], "(7,)")  # the mass may be unknown
                 found.append(item)
                 continue
             state = {"position_m": position, "velocity_m_s": velocity}
             at = np.array([float(when)])
             now = [resample.at(at, column, time, values, state)[0] for column, values in state.items()]
-            found.append(Event(name, float(when), np.concatenate([*now, [1.0]])))
+            found.append(Event(name, float(when), np.append(np.concatenate(now), np.interp(when, time, mass))))
         return tuple(sorted(found, key=lambda event: event.time))
 
     def device(self, word: object) -> str:

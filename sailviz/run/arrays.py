@@ -175,7 +175,7 @@ class Run:
     time: np.ndarray  # (n,) s since the start
     position: np.ndarray  # (n, 3) m, inertial, from the central body
     velocity: np.ndarray  # (n, 3) m/s
-    mass: np.ndarray  # (n,) kg; 1 where the scene gives no mass, so that forces are accelerations
+    mass: np.ndarray  # (n,) kg; NaN where none is given
     attitude: Attitude
     thrust: Thrust
     elements: Elements[np.ndarray]

@@ -43,7 +43,7 @@ def trajectory(
     body: str | None = None,
     radius: float | None = None,
     epoch: Epoch | None = None,
-    mass: ArrayLike = 1.0,
+    mass: ArrayLike | None = None,
     device: str | None = None,
     side: float | None = None,
     tethers: int | None = None,
@@ -65,7 +65,8 @@ def trajectory(
         from the central body
     thrust : (n, 3) acceleration m/s2; zero rows count as switched off
     mu m3/s2, body's name, radius m : the Sun's by default, the Earth's where mu is hers
-    epoch : UTC of time 0, a datetime64, datetime or text. mass : kg, a number or (n,)
+    epoch : UTC of time 0, a datetime64, datetime or text. mass : kg, a number or (n,); NaN is
+        recorded where none is given
     device : "solar-sail", "electric-sail", "plasma-brake", "thruster" or "none", for the mesh; by default what thrust
         and normal suggest. side m of a sail, tethers, tether_length m : for scale and labels
     events : (name, time s) pairs or Events. references : name -> (k, 3) m, or References
@@ -139,7 +140,7 @@ def _checked(
     velocity: ArrayLike,
     normal: ArrayLike | None,
     thrust: ArrayLike | None,
-    mass: ArrayLike,
+    mass: ArrayLike | None,
     body: tuple[str | None, float, float | None],
     epoch: Epoch | None,
     device: str | None,
@@ -167,7 +168,7 @@ def _checked(
     strange = check.units(times, places, velocities, centre) if check.good else ""
     if check.good:
         check.reach(times, moment)
-    marks = check.events(events, times, places, velocities) if check.good else ()
+    marks = check.events(events, times, places, velocities, masses) if check.good else ()
     if check.good and normals is not None:
         check.no_zeros("normal", normals)
     check.finish()

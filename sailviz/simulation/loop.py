@@ -139,7 +139,7 @@ def _blocks(
                 block,
                 bodies=bodies(p, planets, block.time) if drawn else {},
                 approximations={name: way.positions(block.time) for name, way in p.approximations.items()},
-                events=tuple(filled.events),
+                events=tuple(_with_known_mass(p, filled.events)),
                 ended=ended,
             )
         if filled.status == stepping.TIME_IS_UP:
@@ -170,6 +170,13 @@ def _ending(p: Plan, state: Any, status: int) -> str:
     if status == stepping.SURFACE:
         return "impact"
     return p.names[stepping.stopped_by(state)] if status == stepping.STOPPED else ""
+
+
+def _with_known_mass(p: Plan, events: list[Event]) -> list[Event]:
+    """Events whose state says no mass where the scene gives none: 1 kg flew, so that forces are accelerations."""
+    if p.mass_known:
+        return events
+    return [replace(event, state=np.append(event.state[:6], np.nan)) for event in events]
 
 
 def _with_last_state(filled: Filled, state: Any) -> Filled:
@@ -276,7 +283,7 @@ def _observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, f
         time,
         position,
         velocity,
-        states[6].copy(),
+        states[6].copy() if p.mass_known else np.full(len(time), np.nan),
         attitude,
         thrust,
         orbital.elements(position, velocity, p.body.mu),

@@ -46,7 +46,7 @@ class Plan:
     body: Body
     position: np.ndarray  # (3,) m
     velocity: np.ndarray  # (3,) m/s
-    mass: float  # kg
+    mass: float  # kg; 1 where the scene gives none, so that forces are accelerations
     model: dynamics.Model
     table: np.ndarray | None  # of the steering, `sailviz.steering.table`
     schedule: Schedule  # of the thrust factor
@@ -58,6 +58,11 @@ class Plan:
     choice: Choice  # of the integrator
     keep: tuple[object, ...]  # compiled user functions must live as long as the plan
     identity: str
+
+    @property
+    def mass_known(self) -> bool:
+        """Whether the scene gives a mass."""
+        return self.scene.device.mass is not None
 
 
 def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:

@@ -7,6 +7,7 @@ import pytest
 
 import sailviz
 from sailviz.checks.expectations import Judge, Verdict, check
+from sailviz.errors import SceneError
 from sailviz.run.quantities import circular_mean
 from sailviz.simulation.loop import simulate, simulate_blocks
 
@@ -14,7 +15,7 @@ ELLIPSE = {  # a = 1 m around mu = 1 m3/s2: aphelion 1.3 at pi, perihelion 0.7 a
     "title": "ellipse",
     "body": {"mu_m3_s2": 1.0},
     "start": {"kind": "elements", "semi_major_axis_m": 1, "eccentricity": 0.3},
-    "device": {"kind": "none"},
+    "device": {"kind": "none", "mass_kg": 7},
     "event": [{"kind": "apoapsis"}, {"kind": "radius", "name": "one metre", "radius_m": 1, "sense": "up"}],
     "propagation": {"duration_s": 4 * np.pi, "outputs": 4001, "tolerance": 1e-13},
 }
@@ -49,9 +50,15 @@ MET = [
     {"quantity": "angular_momentum_m2_s", "at": "end", "value": np.sqrt(0.91), "within": 1e-12},
     {"quantity": "flight_path_angle_deg", "at": "max", "value": np.degrees(np.arcsin(0.3)), "within": 2e-4},
     {"quantity": "elevation_deg", "at": "max", "value": 0, "within": 1e-12},
-    {"quantity": "mass_kg", "at": "end", "value": 1, "within": 1e-12},
+    {"quantity": "mass_kg", "at": "end", "value": 7, "within": 1e-12},
 ]
 IDS = [f"{item['quantity']} at {item.get('at', 'time')}" for item in MET]
+
+
+def test_a_mass_that_nobody_gave_cannot_be_expected():
+    asked = [{"quantity": "mass_kg", "at": "end", "value": 1, "within": 1e-12}]
+    with pytest.raises(SceneError, match="the device gives no mass"):
+        sailviz.load_scene({**ELLIPSE, "device": {"kind": "none"}, "expect": asked})
 
 
 @pytest.mark.parametrize("expected", MET, ids=IDS)

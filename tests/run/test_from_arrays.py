@@ -117,6 +117,15 @@ def test_an_event_gets_the_state_between_its_rows():
     assert energy == pytest.approx(-MU_SUN / (2 * AU), rel=1e-7)
 
 
+def test_a_trajectory_without_a_mass_has_none():
+    run = trajectory(*ellipse(), events=[("half", 1e7)])
+    assert np.isnan(run.mass).all()
+    assert np.isnan(run.events[0].state[6])
+    heavy = trajectory(*ellipse(), mass=5, events=[("half", 1e7)])
+    assert (heavy.mass == 5).all()
+    assert heavy.events[0].state[6] == 5
+
+
 def test_every_fault_is_named_at_once_with_what_was_wanted():
     time, position, velocity = ellipse()
     position[3, 1] = np.nan

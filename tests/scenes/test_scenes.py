@@ -49,6 +49,6 @@ def test_scene_agrees_with_scipy(shipped_run, name):
     jumps = schedule(scene)[0]
     rows = run.time <= min([last, *jumps[MOST_JUMPS : MOST_JUMPS + 1]])
     assert rows.sum() > 5
-    position = integrate(scene, np.concatenate([r, v, run.mass[:1]]), run.time[rows])
+    position = integrate(scene, np.concatenate([r, v, [scene.device.mass or 1.0]]), run.time[rows])
     away = np.linalg.norm(run.position[rows] - position, axis=1) / np.linalg.norm(position, axis=1)
     assert away.max() < 1e-8

@@ -90,10 +90,12 @@ def expected_of_ensembles(scene: Scene) -> Faults:
 
 
 def expected_moments(scene: Scene) -> Faults:
-    """Expectations are of moments that the run can meet."""
+    """Expectations are of moments that the run can meet, and of a mass that is known."""
     found, happens = [], {item.name or item.kind for item in scene.event} | COME_WITH_DEVICES
     words = [*STATISTICS_OF_ROWS, *sorted(happens)]
     for i, expected in enumerate(scene.expect):
+        if expected.quantity.startswith("mass_") and scene.device.mass is None:
+            found.append((f"expect[{i}].quantity", "the device gives no mass"))
         if expected.at is not None and expected.at not in words:
             found.append((f"expect[{i}].at", f"no such moment {shown(expected.at)}. {nearest(expected.at, words)}"))
         if expected.at_time is not None and not 0 <= expected.at_time <= scene.propagation.duration:

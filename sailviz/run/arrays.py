@@ -128,7 +128,8 @@ class Setting:
     versions: dict[str, str]
     accuracy: str  # one sentence on how the numbers were made
     identity: str  # hash of the resolved scene, hexadecimal
-    play_duration: float = 40.0  # s of wall time that a replay takes
+    play_duration: float | None = None  # s of wall time that a replay takes; None as suits the picture
+    plots: tuple[str, ...] = ()  # words of the curves that shall be in front
     shells: tuple[Shell, ...] = ()
     ensembles: tuple[EnsembleStatistics, ...] = ()
 

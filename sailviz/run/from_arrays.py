@@ -57,7 +57,7 @@ def trajectory(
     environment: Mapping[str, ArrayLike] | None = None,
     planets: bool = True,
     accuracy: str = "Given as arrays; nothing was propagated.",
-    play_duration: float = 40.0,
+    play_duration: float | None = None,
 ) -> Run:
     """A Run from arrays. SI; vectors inertial: in the ecliptic of J2000 round the Sun, in the equator round the Earth.
 
@@ -108,7 +108,7 @@ def trajectory(
         versions={"sailviz": __version__, "python": platform.python_version(), "numpy": np.__version__},
         accuracy=f"{accuracy} {given.note[0].upper()}{given.note[1:]}." if given.note else accuracy,
         identity="",
-        play_duration=float(play_duration),
+        play_duration=None if play_duration is None else float(play_duration),
     )
     run = _derived(given, setting, _bodies(given.body, given.epoch, given.time, planets))
     return replace(run, setting=replace(setting, identity=_identity(run)))

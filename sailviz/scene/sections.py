@@ -128,9 +128,11 @@ class Limits(Section):
 
 
 class Recording(Section):
-    """How the recording plays."""
+    """How the recording plays, 30 s long (40 s round a planet) where nothing else is said, and which curves are in
+    front, most telling first: words of curves that every flight has, or columns of the environment."""
 
-    play_duration: Annotated[Time, POSITIVE] = 40.0
+    play_duration: Annotated[Time, POSITIVE] | None = None
+    plots: tuple[str, ...] = ()
 
 
 OfRows = Literal["start", "end", "min", "max", "mean", "drift"]

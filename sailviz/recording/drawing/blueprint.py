@@ -1,4 +1,6 @@
-"""The views of a recording, from its layout: on the left space, the craft and words, on the right the curves."""
+"""The views of a recording, from its layout: on top the line of the moment; on the left the flight over the words; on
+the right the craft from close by over at most two plots. It opens playing, in a loop.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +10,7 @@ from rerun.blueprint.archetypes import PlotBackground, TextLogColumns
 from rerun.blueprint.encodings import TextLogColumn, TextLogColumnKind, TimelineColumn
 
 from sailviz.recording.drawing.arrival_plane import BOX, Arrival
-from sailviz.recording.drawing.cameras import Camera
-from sailviz.recording.drawing.layout import DESCENT, TUBE, Layout
+from sailviz.recording.drawing.layout import Layout, Space, Span
 from sailviz.recording.drawing.plot_column import PlotView
 from sailviz.recording.drawing.style import BACKGROUND
 
@@ -18,17 +19,22 @@ Overrides = dict[rr.encodings.EntityPath | str, rrb.VisibleTimeRanges | rrb.Enti
 ENDLESS = rrb.TimeRangeBoundary.infinite()
 NOW = rrb.TimeRangeBoundary.cursor_relative()
 WHOLE_TIME = rrb.TimeAxis(view_range=rr.TimeRange(start=ENDLESS, end=ENDLESS))
+ROWS = [104, 728]  # shares of the line of the moment and of everything below it
+COLUMNS = [63, 37]
+BARS = "Flights [%] by distance from the calm flight [0.001 au]"
 
 
 def blueprint(layout: Layout) -> rrb.Blueprint:
     """The blueprint of a recording."""
+    now = rrb.TextDocumentView(origin="/now", name=layout.title)
+    body = rrb.Horizontal(left(layout), right(layout), column_shares=COLUMNS)
     return rrb.Blueprint(
-        arrange(layout),
+        rrb.Vertical(now, body, row_shares=ROWS),
         rrb.TimePanel(
             state="collapsed",
-            timeline=layout.timeline,
+            timeline=layout.timelines[0],
             playback_speed=layout.speed,
-            play_state="paused",
+            play_state="playing",
             loop_mode="all",
         ),
         rrb.SelectionPanel(state="hidden"),
@@ -38,36 +44,42 @@ def blueprint(layout: Layout) -> rrb.Blueprint:
     )
 
 
-def arrange(layout: Layout) -> rrb.Container:
-    """Left: cameras as tabs over close-up and words. Right: curves over lanes."""
+def left(layout: Layout) -> rrb.Container:
+    """The flight from several eyes, over the words."""
+    spaces: list[View] = [space_view(layout, space) for space in layout.spaces]
+    spaces += [arrival_view(arrival) for arrival in layout.arrivals]
     words = rrb.Tabs(
         rrb.TextDocumentView(origin="/about", name="About"),
         rrb.TextLogView(origin="/log", name="Events", columns=event_columns(layout)),
         active_tab=0,
     )
-    below: View = close_view(layout.close_up)
-    if layout.arrivals:
-        below = rrb.Tabs(*(arrival_view(arrival) for arrival in layout.arrivals), below, active_tab=0)
-    left = rrb.Vertical(
-        rrb.Tabs(*(space_view(layout, camera) for camera in layout.cameras), active_tab=0),
-        rrb.Horizontal(below, words, column_shares=[1, 1] if layout.arrivals else [3, 2]),
-        row_shares=[4, 3],
-    )
-    right: list[View] = []
-    shares: list[float] = []
-    for slot in layout.slots:
-        plots = [plot_view(plot) for plot in slot.plots]
-        right.append(plots[0] if len(plots) == 1 else rrb.Tabs(*plots, active_tab=0))
-        shares.append(slot.share)
-    if layout.arrivals:
-        name = "Flights by distance from nominal [% over 10⁻³ au]"
-        right.append(rrb.BarChartView(origin="/histogram", contents=["+ /histogram/**"], name=name))
-        shares.append(2.0)
-    if layout.lanes:
-        lanes = [f"+ /phase/{lane}" for lane in layout.lanes]
-        right.append(rrb.StateTimelineView(origin="/phase", contents=lanes, name="Phases", time_view=WHOLE_TIME))
-        shares.append(layout.lane_share)
-    return rrb.Horizontal(left, rrb.Vertical(*right, row_shares=shares), column_shares=[5, 3])
+    shares = [566, 214] if layout.arrivals else [596, 184]
+    return rrb.Vertical(rrb.Tabs(*spaces, active_tab=0), words, row_shares=shares)
+
+
+def right(layout: Layout) -> rrb.Container:
+    """The craft from close by, and curves: two in sight at most, the others as tabs of the last."""
+    parts: list[View] = [space_view(layout, layout.close)]
+    plots = [plot_view(plot) for plot in layout.plots]
+    lanes = [lane_view(layout)] if layout.lanes else []
+    if layout.bars:
+        bars = rrb.BarChartView(
+            origin="/flights", contents=["+ /flights/**"], name=BARS, plot_legend=rrb.PlotLegend(visible=False)
+        )
+        parts += [tabs([*plots, *lanes]), bars]
+    elif len(plots) > 1:
+        parts += [plots[0], tabs([*plots[1:], *lanes])]
+    elif plots or lanes:
+        parts.append(tabs([*plots, *lanes]))
+    else:
+        parts.append(space_view(layout, next(s for s in layout.spaces if s.name != layout.spaces[0].name)))
+    shares = [300, 240, 240] if layout.bars else [340, 220, 220]
+    return rrb.Vertical(*parts, row_shares=shares[: len(parts)] if len(parts) == 3 else [400, 380])
+
+
+def tabs(views: list[View]) -> View:
+    """Several views in one place."""
+    return views[0] if len(views) == 1 else rrb.Tabs(*views, active_tab=0)
 
 
 def event_columns(layout: Layout) -> TextLogColumns:
@@ -77,28 +89,19 @@ def event_columns(layout: Layout) -> TextLogColumns:
     return TextLogColumns(timeline_columns=times, text_log_columns=kinds)
 
 
-def space_view(layout: Layout, camera: Camera) -> rrb.Spatial3DView:
-    """The system, from one of its cameras."""
-    contents = ["+ /world/**", "- /world/plane/**", "+ /world/plane/shells/**"]
-    contents += [f"- {path}/**" for path in layout.hidden]
-    if layout.arrivals:
-        contents += ["- /world/cloud/**"]
-        kinds = ("tube",) if camera.name == TUBE else ("flights", "now", "ellipse")
-        contents += [f"+ /world/cloud/{name}/{kind}/**" for name in layout.ensembles for kind in kinds]
-    if camera.name == DESCENT:
-        contents = [f"+ /world/{name}/**" for name in ("stars", "plane", "center", "night")]
-        contents += ["- /world/night/umbra", "- /world/night/sunlight/**"]
-        contents += [f"- /world/center/air/shell{k}" for k in range(1, 4)]  # their heights are for the eye only
-    if camera.name == "Follow":
-        contents += ["- /world/names/**", "- /world/night/umbra"]  # labels show through; the umbra's wall would be near
+def space_view(layout: Layout, space: Space) -> rrb.Spatial3DView:
+    """A view of space."""
+    camera = space.camera
     return rrb.Spatial3DView(
         name=camera.name,
         origin=camera.origin,
-        contents=contents,
+        contents=list(space.contents),
         background=BACKGROUND,
         line_grid=rrb.LineGrid3D(visible=False),
-        overrides=trail_ranges(layout),
-        eye_controls=eye(camera),
+        overrides=spans(layout),
+        eye_controls=rrb.EyeControls3D(
+            kind=rrb.Eye3DKind.Orbital, position=camera.position, look_target=camera.target, eye_up=camera.up
+        ),
     )
 
 
@@ -114,45 +117,19 @@ def arrival_view(arrival: Arrival) -> rrb.Spatial2DView:
     )
 
 
-def close_view(camera: Camera) -> rrb.Spatial3DView:
-    """The craft from close by."""
-    return rrb.Spatial3DView(
-        name=camera.name,
-        origin=camera.origin,
-        contents=["+ /sail/**"],
-        background=BACKGROUND,
-        line_grid=rrb.LineGrid3D(visible=False),
-        eye_controls=eye(camera),
-    )
+def lane_view(layout: Layout) -> rrb.StateTimelineView:
+    """On and off."""
+    lanes = [f"+ {lane}" for lane in layout.lanes]
+    return rrb.StateTimelineView(origin="/", contents=lanes, name="On and off", time_view=WHOLE_TIME)
 
 
-def eye(camera: Camera) -> rrb.EyeControls3D:
-    """Where a view looks from."""
-    return rrb.EyeControls3D(
-        kind=rrb.Eye3DKind.Orbital, position=camera.position, look_target=camera.target, eye_up=camera.up
-    )
+def spans(layout: Layout) -> Overrides:
+    """Which part of the run each entity shows."""
+    return {path: time_range(layout, span) for path, span in layout.spans.items()}
 
 
-def trail_ranges(layout: Layout) -> Overrides:
-    """Which part of the run each part of the trail shows. The parts do not overlap: lines on one another tear."""
-    ranges: Overrides = {
-        "/world/trail/past": time_range(layout, -layout.past if layout.past else None, -layout.tail),
-        "/world/trail/recent": time_range(layout, -layout.tail, 0.0),
-        "/world/ladder": time_range(layout, None, None),
-        "/world/plane/ladder": time_range(layout, None, None),
-        "/world/plane/rungs": time_range(layout, None, None),
-        "/world/nominal/path": time_range(layout, None, 0.0),
-    }
-    ranges |= {f"/world/cloud/{name}/flights": time_range(layout, None, 0.0) for name in layout.ensembles}
-    if layout.future:
-        ranges["/world/trail/future"] = time_range(layout, 0.0, None)
-    else:
-        ranges["/world/trail/future"] = rrb.EntityBehavior(visible=False)
-    return ranges
-
-
-def time_range(layout: Layout, start: float | None, end: float | None) -> rrb.VisibleTimeRanges:
-    """From `start` to `end`, s after the cursor; None is without limit."""
+def time_range(layout: Layout, span: Span) -> rrb.VisibleTimeRanges:
+    """From the first to the second, s after the cursor."""
 
     def boundary(seconds: float | None, timeline: str) -> rrb.TimeRangeBoundary:
         if seconds is None:
@@ -162,7 +139,10 @@ def time_range(layout: Layout, start: float | None, end: float | None) -> rrb.Vi
         return rrb.TimeRangeBoundary.cursor_relative(seconds=seconds) if seconds else NOW
 
     return rrb.VisibleTimeRanges(
-        [rrb.VisibleTimeRange(t, start=boundary(start, t), end=boundary(end, t)) for t in layout.timelines]
+        [
+            rrb.VisibleTimeRange(timeline, start=boundary(span[0], timeline), end=boundary(span[1], timeline))
+            for timeline in layout.timelines
+        ]
     )
 
 

@@ -1,5 +1,5 @@
-"""Where to look from. Found by trying directions, so that arrows are apart, nothing is edge-on and the Sun is where it
-helps.
+"""Where to look from: directions are tried, so that the lit side of a film is seen, the push is not hidden behind it,
+names are apart, and everything fits.
 """
 
 from __future__ import annotations
@@ -10,6 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from sailviz.frames import unit
+
+FIELD = 0.50  # half the height of a view, of the distance to what it looks at
+FITTING = 12  # rounds in which target and distance are found
 
 
 @dataclass(frozen=True)
@@ -23,50 +26,141 @@ class Camera:
     up: tuple[float, ...] = (0.0, 0.0, 1.0)
 
 
-def directions(elevations: ArrayLike, step: float = 10.0) -> np.ndarray:
+@dataclass(frozen=True)
+class Sweep:
+    """An eye that goes round the z axis at an even rate: its first direction (3,), and rad until the end."""
+
+    eye: np.ndarray
+    turn: float
+
+
+def directions(elevations: ArrayLike, step: float = 6.0) -> np.ndarray:
     """Unit vectors on a grid of azimuths every `step` degrees and the given elevations, deg, (n, 3)."""
     azimuth, elevation = np.meshgrid(np.radians(np.arange(0, 360, step)), np.radians(elevations))
-    return np.stack(
-        [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)], -1
-    ).reshape(-1, 3)
+    return direction(azimuth, elevation).reshape(-1, 3)
 
 
-def apart(
-    arrows: ArrayLike,
-    facing: np.ndarray | None = None,
-    slanted: np.ndarray | None = None,
-    open_to: np.ndarray | None = None,
-    elevations: ArrayLike = (12, 20, 28, 36, 44),
+def direction(azimuth: ArrayLike, elevation: ArrayLike) -> np.ndarray:
+    """Unit vectors (..., 3) of azimuths and elevations in rad."""
+    azimuth, elevation = np.broadcast_arrays(azimuth, elevation)
+    across = np.cos(elevation)
+    return np.stack([across * np.cos(azimuth), across * np.sin(azimuth), np.sin(elevation)], -1)
+
+
+def seen(cosine: np.ndarray, film: bool) -> np.ndarray:
+    """How well a sail is seen whose lit side has this cosine to the eye: a film best at a slant and from its lit side,
+    a wheel from both."""
+    if film:
+        found = np.interp(cosine, [-1, -0.2, 0, 0.12, 0.3, 0.75, 1], [-0.25, -0.3, -0.1, 0.75, 1, 1, 0.7])
+    else:
+        found = np.interp(np.abs(cosine), [0, 0.25, 0.8, 1], [-0.3, 1, 1, 0.7])
+    return np.asarray(found)
+
+
+def across(eyes: np.ndarray, arrows: np.ndarray, enough: float) -> np.ndarray:
+    """How much of each arrow is seen from each eye, 0 to 1; `enough` of it counts as all. (eyes, k)"""
+    sine = np.sqrt(np.clip(1 - (eyes @ arrows.T) ** 2, 0, 1))
+    return np.asarray(np.minimum(sine, enough) / enough)
+
+
+def fixed_eye(
+    normals: np.ndarray,
+    thrusts: np.ndarray,
+    weights: np.ndarray,
+    film: bool,
+    elevations: ArrayLike,
+    *,
+    push: float = 0.5,
+    near: np.ndarray | None = None,
+    spots: np.ndarray | None = None,
+    others: np.ndarray | None = None,
 ) -> np.ndarray:
-    """Direction from which arrows from the origin look long and well separated. arrows (k, 3) -> (3,) unit.
+    """Direction (3,) from which a sail is seen best over some moments.
 
-    facing : the normal of a film whose sunward side should be seen at a slant of about 70 degrees; slanted : the
-    normal of a wheel, and open_to : that of a plane, neither of which should be seen edge-on.
+    normals, thrusts : (n, 3) unit vectors; weights (n,) of the moments; push : what seeing the thrust is worth
+    near : (3,) where the craft should be in the near half, as long as that is worth; spots : (k, 3) things whose names
+    should be apart, of the size of the scene; others : (n, 3) a second arrow
     """
-    pointing = unit(np.asarray(arrows, float))
     eyes = directions(elevations)
-    right = unit(np.cross([0.0, 0.0, 1.0], eyes))
-    up = np.cross(eyes, right)
-    flat = np.stack([right @ pointing.T, up @ pointing.T], -1)  # (eyes, arrows, 2)
-    length = np.linalg.norm(flat, axis=-1)
-    gaps = [np.linalg.norm(flat[:, i] - flat[:, j], axis=-1) for i in range(len(pointing)) for j in range(i)]
-    closest = np.min(gaps, axis=0) if gaps else 0.45
-    score = 1.8 * np.minimum(closest, 0.45) + 0.6 * length.min(1) + 0.25 * length.mean(1)
-    if facing is not None:
-        score = score + 1.2 * (1 - np.abs(-(eyes @ facing) - 0.36) / 0.36)
-    if slanted is not None:
-        score = score + 1.2 * np.minimum(np.abs(eyes @ slanted), 0.4) / 0.4
-    if open_to is not None:
-        score = score + 0.9 * np.abs(eyes @ open_to)
+    share = weights / weights.sum()
+    score = seen(-(eyes @ normals.T), film) @ share + push * across(eyes, thrusts, 0.85) @ share
+    if near is not None:
+        score = score + eyes @ near
+    if others is not None:
+        score = score + 0.5 * across(eyes, others, 0.7) @ share
+    if spots is not None and len(spots) > 1:
+        right = unit(np.cross([0.0, 0.0, 1.0], eyes))
+        flat = np.stack([right @ spots.T, np.cross(eyes, right) @ spots.T], -1)
+        gaps = np.linalg.norm(flat[:, :, None] - flat[:, None], axis=-1) + 9 * np.eye(len(spots))
+        score = score + 0.6 * np.minimum(gaps.min((1, 2)), 0.25) / 0.25
     best: np.ndarray = eyes[np.argmax(score)]
     return best
 
 
-def over_planet(orbit_normal: np.ndarray, sun: np.ndarray | None = None) -> np.ndarray:
-    """Direction that sees an orbit as an open ellipse, the line between day and night, and some north."""
-    eyes = directions(np.arange(5, 50, 5), 5.0)
-    cost = np.abs(np.abs(eyes @ orbit_normal) - 0.45) + 0.6 * np.abs(eyes[:, 2] - 0.40)
+def sweep(
+    normals: np.ndarray,
+    thrusts: np.ndarray,
+    places: np.ndarray,
+    shares: np.ndarray,
+    weights: np.ndarray,
+    film: bool,
+    elevation: float,
+) -> Sweep:
+    """The slow sweep, at most 200 degrees, that sees a sail best: normals, thrusts, places (n, 3) unit vectors at
+    shares (n,) of the time; elevation in degrees."""
+    share = weights / weights.sum()
+    start = np.radians(np.arange(0, 360, 10))[:, None, None]
+    turn = np.radians(np.arange(-200, 201, 20))[None, :, None]
+    eyes = direction(start + turn * shares, np.radians(elevation))  # (starts, turns, n, 3)
+    gold = seen(-np.sum(eyes * normals, -1), film)
+    sine = np.sqrt(np.clip(1 - np.sum(eyes * thrusts, -1) ** 2, 0, 1))
+    near = np.sum(eyes * places, -1)
+    worth = gold + 0.5 * np.minimum(sine, 0.85) / 0.85 + (0.45 if film else 1.0) * near
+    score = worth @ share - 0.12 * np.abs(turn[..., 0]) / np.pi
+    first, pace = np.unravel_index(np.argmax(score), score.shape)
+    return Sweep(eyes[first, pace, 0], float(turn[0, pace, 0]))
+
+
+def fit(
+    places: np.ndarray, eye: np.ndarray, aspect: float, fill: float = 0.90, up: ArrayLike = (0.0, 0.0, 1.0)
+) -> tuple[np.ndarray, np.ndarray]:
+    """Eye and target (3,) from which places (n, 3) fill a view, as wide as `aspect` times its height, seen along the
+    direction `eye` (3,)."""
+    toward = unit(np.asarray(eye, float))
+    right = unit(np.cross(np.asarray(up, float), toward))
+    top = np.cross(toward, right)
+    target, half, distance = places.mean(0), FIELD * fill, 1.0
+    for _ in range(FITTING):
+        off = places - target
+        x, y, z = off @ right, off @ top, off @ toward
+        distance = float(max(np.max(np.abs(y) / half + z), np.max(np.abs(x) / (half * aspect) + z)))
+        flat_x, flat_y = x / (distance - z), y / (distance - z)
+        aside = 0.4 * distance * (flat_x.max() + flat_x.min())
+        above = 0.4 * distance * (flat_y.max() + flat_y.min())
+        target = target + aside * right + above * top
+    off = places - target
+    x, y, z = off @ right, off @ top, off @ toward
+    distance = float(max(np.max(np.abs(y) / half + z), np.max(np.abs(x) / (half * aspect) + z)))
+    return target + distance * toward, target
+
+
+def on_screen(places: np.ndarray, camera: Camera, aspect: float) -> np.ndarray:
+    """Where places (n, 3) of a camera's frame are seen: (n, 2), -1 to 1 across the view and up; NaN behind the eye."""
+    eye, target = np.array(camera.position), np.array(camera.target)
+    toward = unit(eye - target)
+    right = unit(np.cross(camera.up, toward))
+    off = places - eye
+    depth = -(off @ toward)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        flat = np.stack([off @ right / aspect, off @ np.cross(toward, right)], -1) / (FIELD * depth[:, None])
+    return np.where((depth > 0)[:, None], flat, np.nan)
+
+
+def over_planet(orbit_normal: np.ndarray, sun: np.ndarray | None) -> np.ndarray:
+    """Direction that sees an orbit as an open ellipse, from the day side, and some north."""
+    eyes = directions(np.arange(0, 60, 5), 5.0)
+    cost = np.abs(np.abs(eyes @ orbit_normal) - 0.5) + 0.3 * np.abs(eyes[:, 2] - 0.35)
     if sun is not None:
-        cost = cost + np.abs(eyes @ sun - 0.40)
+        cost = cost + 0.9 * np.abs(eyes @ sun - 0.72)
     best: np.ndarray = eyes[np.argmin(cost)]
     return best

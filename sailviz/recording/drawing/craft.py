@@ -4,35 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import rerun as rr
 
 from sailviz.recording.drawing import style
-from sailviz.recording.drawing.cameras import Camera
 from sailviz.recording.drawing.log import Color, Index, Picture, f4
-from sailviz.recording.drawing.samples import Samples
 from sailviz.recording.drawing.style import points
-from sailviz.run.arrays import Craft, Run
-
-if TYPE_CHECKING:
-    from sailviz.recording.drawing.layout import Layout
-
-
-class CloseUp(Protocol):
-    """The view of a craft from close by."""
-
-    def __init__(self, picture: Picture, first: Run, craft: CraftDrawing): ...
-
-    def add(self, samples: Samples) -> None:
-        """A group of drawn rows."""
-
-    def size(self, layout: Layout) -> None:
-        """Everything that depends on how far the run reaches."""
-
-    def camera(self, middle: Samples) -> Camera:
-        """Where it is seen from, for the row in the middle of the run."""
+from sailviz.run.arrays import Craft
 
 
 @dataclass(frozen=True)
@@ -40,9 +19,7 @@ class CraftDrawing:
     """How one kind of craft is drawn. Its shape is of size 1: a side, a radius or a height."""
 
     log_shape: Callable[[Picture, str, bool], None]  # under a path; True adds what is only seen from close by
-    close_up: type[CloseUp]
     size: float = 0.10  # in the system view, as a fraction of the largest distance from the centre that is drawn
-    size_over_planet: float | None = None  # the same where there is a planet in the centre, if it differs
     close_size: float = 9.0  # in the close-up
     close_name: str = ""  # of the close-up, instead of the craft's own label
     true_size: Callable[[Craft], float | None] = lambda craft: None  # m, what the drawn size stands for
@@ -51,12 +28,13 @@ class CraftDrawing:
     facing: bool = False  # a film: its sunward side must be seen
     slanted: bool = False  # a wheel: it must not be seen edge-on
     has_angles: bool = True  # pitch, cone and clock angle mean something
-    steers: bool = True  # they are shown
-    normal_length: float | None = 10.0  # of the arrow in the close-up; None where the normal is the thrust
-    descends: bool = False  # its altitudes are the plot, not its distance
-    force: str = "Thrust"  # what it does, in words
+    pushes: bool = True  # it has a thrust to be told
+    descends: bool = False  # what it does is brake
+    force: str = "push"  # what it does, in a word
     lane: str = "thrust"  # the words and colours of its working and resting, in style.LANES
-    flow: tuple[str, Color] = ("sunlight", style.SUN)  # what comes from the Sun and acts on it
+    sail_word: str = "sail"
+    flow_word: str = ""  # what comes from the Sun and acts on it, in a word
+    flow_color: Color = tuple(style.SUN)
 
 
 class Glow:
@@ -64,23 +42,20 @@ class Glow:
 
     def __init__(self, picture: Picture, body: str, craft: CraftDrawing):
         self._picture = picture
-        self._on: bool | None = None
         self._path = f"{body}/{craft.glow}" if craft.glow else ""
 
     def add(self, index_of: Callable[[np.ndarray], Index], on: np.ndarray) -> None:
         """on (n,) bool; index_of(rows) gives the timelines of some of the rows. Only changes are written."""
-        before = not on[0] if self._on is None else self._on
-        changed = np.flatnonzero(np.diff(on, prepend=before))
-        self._on = bool(on[-1])
+        changed = np.flatnonzero(np.diff(on, prepend=not on[0]))
         if self._path and len(changed):
             scale = np.where(on[changed], 1.0, 1e-6)[:, None] * np.ones(3)
             self._picture.log_columns(self._path, index_of(changed), rr.Transform3D.columns(scale=f4(scale)))
 
 
-def log_tether(picture: Picture, path: str, start: float, width: float, thickness: float, near: bool) -> None:
+def log_tether(picture: Picture, path: str, start: float, width: float, thickness: float) -> None:
     """A tether of length 1 hanging from z = -start to -1 with tip and sheath; thickness of the sheath in lengths."""
     picture.log_lines(f"{path}/line", [[[0.0, 0.0, -start], [0.0, 0.0, -1.0]]], style.TETHER_BRAKE, width)
-    picture.log_static(f"{path}/tip", rr.Points3D([[0, 0, -1]], radii=points(6.0 if near else 3.0), colors=[style.BUS]))
+    picture.log_static(f"{path}/tip", rr.Points3D([[0, 0, -1]], radii=points(6.0), colors=[style.BUS]))
     picture.log_static(
         f"{path}/sheath",
         rr.GaussianSplats3D(

@@ -1,9 +1,13 @@
-"""The curves of a run under /plots; on and off as coloured lanes under /phase.
+"""The curves of a run under /plots; on and off as coloured lanes.
 
-About PLOT_ROWS rows are drawn at most, spread over rows and time; the numbers of every row are in the truth.
+About PLOT_ROWS rows are kept at most, spread over rows and time, and of flights of many turns the least, the mean and
+the largest value of every revolution or so: what would be a solid block is a band with its mean. The numbers of every
+row are in the truth.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass, replace
 
 import numpy as np
 import rerun as rr
@@ -12,45 +16,219 @@ from sailviz.recording import timelines
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.craft import CraftDrawing
 from sailviz.recording.drawing.log import Color, Picture
-from sailviz.recording.drawing.plots import plots_of
+from sailviz.recording.drawing.phrases import amount, push_unit
+from sailviz.recording.drawing.plot_column import FLAT, SHOWN_FROM, PlotView, corner, merged, nice_range, score
+from sailviz.recording.drawing.plots import RARE, Plot, plots_of
 from sailviz.recording.drawing.samples import Frame
-from sailviz.run.arrays import Run
+from sailviz.run.arrays import Run, Setting
 
-PLOT_ROWS = 20_000
-FAR_ROWS = 1200  # where rows are far apart on their orbit: there are many curves of years, and no swing to be seen
+PLOT_ROWS = 3000
+MOST_BINS, ROWS_IN_BIN = 400, 8
+BAND_TURNS = 40.0  # revolutions from which a swing within one is a solid block
+SWING = 0.04  # of the whole range, within a bin, from which a curve is a band
 UNKNOWN = 0.25  # revolutions between rows over which light and shadow come and go unseen
+MOST_CHANGES = 40  # of a lane that is still read
+LANE_NAMES = {"thrust": "push", "sunlit": "light"}  # paths stand on the lanes: a word each
+BAND_SHADE = 0.6
+
+
+@dataclass
+class Swing:
+    """Least, sum, largest and number of the values in even stretches of the time, (bins, k)."""
+
+    low: np.ndarray
+    high: np.ndarray
+    total: np.ndarray
+    count: np.ndarray
+
+    @staticmethod
+    def of(bins: int, width: int) -> Swing:
+        shape = (bins, width)
+        return Swing(np.full(shape, np.inf), np.full(shape, -np.inf), np.zeros(shape), np.zeros(shape))
+
+    def add(self, bin_of: np.ndarray, values: np.ndarray) -> None:
+        """Values (n, k) in bins (n,), which do not fall."""
+        starts = np.flatnonzero(np.diff(bin_of, prepend=-1))
+        place = bin_of[starts]
+        known = np.isfinite(values)
+        self.low[place] = np.minimum(self.low[place], np.minimum.reduceat(np.where(known, values, np.inf), starts))
+        self.high[place] = np.maximum(self.high[place], np.maximum.reduceat(np.where(known, values, -np.inf), starts))
+        self.total[place] += np.add.reduceat(np.where(known, values, 0.0), starts)
+        self.count[place] += np.add.reduceat(known.astype(float), starts)
+
+    def scaled(self, factor: float) -> Swing:
+        """The same in another unit."""
+        return Swing(factor * self.low, factor * self.high, factor * self.total, self.count)
 
 
 class Curves:
-    """Writes the plots of a run and remembers how far they reach."""
+    """Gathers the curves of a run, and writes those that say something once it is over."""
+
+    def __init__(self, picture: Picture, first: Run, frame: Frame, craft: CraftDrawing):
+        self._picture, self._frame, self._setting = picture, frame, first.setting
+        self._picker = timelines.Picker(first.setting.rows, PLOT_ROWS, first.setting.duration)
+        self.plots = plots_of(first, frame, craft)
+        self._number: list[np.ndarray] = []
+        self._time: list[np.ndarray] = []
+        self._values: dict[str, list[np.ndarray]] = {plot.path: [] for plot in self.plots}
+        bins = int(min(MOST_BINS, max(first.setting.rows // ROWS_IN_BIN, 1), max(frame.turns, 1)))
+        self._bins = bins if np.isfinite(frame.turns) and frame.turns > BAND_TURNS else 0
+        self._swings = {plot.path: Swing.of(self._bins, len(plot.names)) for plot in self.plots if self._bins}
+        self._reach: dict[str, tuple[float, float]] = {}
+        self._lanes = Lanes(picture, first, frame, craft)
+
+    def add(self, run: Run) -> None:
+        """A block of a run, all rows."""
+        drawn = self._picker.pick(run)
+        picked = timelines.take(run, drawn)
+        self._number.append(run.first + drawn)
+        self._time.append(picked.time)
+        share = (run.time - self._frame.start) / self._setting.duration
+        bin_of = np.clip(share * self._bins, 0, max(self._bins - 1, 0)).astype(int)
+        for plot in self.plots:
+            if self._bins:
+                self._swings[plot.path].add(bin_of, plot.values(run))
+            self._values[plot.path].append(plot.values(picked))
+        self._lanes.add(run)
+
+    def finish(self, last: Run, asked: tuple[str, ...], about: tuple[str, ...]) -> list[PlotView]:
+        """Write the curves -> views of those that vary, most telling first; last : the last row of the run.
+
+        asked : words of the plots that the scene wants in front; about : words of what it speaks of.
+        """
+        number, time = np.concatenate(self._number), np.concatenate(self._time)
+        if len(number) == 0 or number[-1] != last.first:
+            number, time = np.append(number, last.first), np.append(time, last.time)
+            for plot in self.plots:
+                self._values[plot.path].append(plot.values(last))
+        index = timelines.time_columns(self._setting, number, time)
+        found: list[tuple[float, PlotView]] = []
+        for plot in self.plots:
+            values = np.concatenate(self._values[plot.path])
+            if plot.handy:
+                plot, values = self._in_handy_unit(plot, values)
+            worth = max((score(values[:, k], plot.natural, plot.bonus) for k in range(values.shape[1])), default=0.0)
+            wanted = plot.key in asked
+            if plot.key in RARE and not wanted and plot.key.split("_")[0] not in about:
+                continue
+            if worth < SHOWN_FROM and not wanted:
+                continue
+            view = self._write(plot, index, values)
+            found.append((1e3 - asked.index(plot.key) if wanted else worth, view))
+        return [view for _, view in sorted(found, key=lambda pair: -pair[0])]
+
+    def _in_handy_unit(self, plot: Plot, values: np.ndarray) -> tuple[Plot, np.ndarray]:
+        """A plot of pushes, and its values, in the unit in which the largest of the whole run is a handy number."""
+        size, name = push_unit(float(np.nanmax(values, initial=0.0)) or 1e-3)
+        if self._bins:
+            self._swings[plot.path] = self._swings[plot.path].scaled(1 / size)
+        return replace(plot, title=f"{plot.title} [{name}]"), values / size
+
+    def steady(self) -> list[str]:
+        """What is constant all along, in words."""
+        words = []
+        for plot in self.plots:
+            values = np.concatenate(self._values[plot.path])[:, 0]
+            known = values[np.isfinite(values)]
+            if not plot.steady or not len(known) or np.ptp(known) > FLAT * np.abs(known).max():
+                continue
+            mean = float(known.mean())
+            if plot.handy:
+                words += [f"{plot.steady} {amount(mean, *push_unit(mean), most=mean)}"] if mean > 0 else []
+            else:
+                words.append(plot.steady.format(mean))
+        return words
+
+    @property
+    def lanes(self) -> list[str]:
+        """Paths of the lanes that can be read."""
+        return self._lanes.shown
+
+    def _write(self, plot: Plot, index: list[rr.TimeColumn], values: np.ndarray) -> PlotView:
+        kept = merged(plot.names, values)
+        shown = np.stack([values[:, k] for _, k in kept], 1)
+        colors = [plot.colors[k] for _, k in kept]
+        names = [name for name, _ in kept]
+        low, high = float(np.nanmin(shown)), float(np.nanmax(shown))
+        if plot.key == "distance":  # the axis of an orbit close to escape is beyond all measure: it may leave the range
+            low, high = max(low, 0.0), min(high, 1.25 * float(np.nanmax(values[:, 0])))
+        if high - low < plot.noise:
+            low = high = round(0.5 * (low + high) / plot.noise) * plot.noise
+        if self._banded(plot, kept, high - low):
+            self._write_bands(plot, kept)
+            curves = self._bands(plot, kept)[1]
+        else:
+            self._write_lines(plot.path, index, shown, names, colors)
+            curves = [shown[:, k] for k in range(len(kept))]
+        if plot.from_zero:
+            low = min(low, 0.0)
+        low, high = nice_range(low, high)
+        legend = corner(curves, low, high) if len(kept) > 1 else ""
+        return PlotView(plot.title, (f"{plot.path}/**",), low, high, legend)
+
+    def _write_lines(
+        self, path: str, index: list[rr.TimeColumn], values: np.ndarray, names: list[str], colors: list[Color]
+    ) -> None:
+        lines = rr.SeriesLines(
+            names=names, colors=[list(color) for color in colors], widths=[style.WIDTH["plot"]] * len(names)
+        )
+        self._picture.log_static(path, lines)
+        self._picture.log_columns(
+            path, index, rr.Scalars.columns(scalars=np.where(np.isfinite(values), values, np.nan))
+        )
+
+    def _banded(self, plot: Plot, kept: list[tuple[str, int]], whole: float) -> bool:
+        """Whether some curve swings so much within a bin that a line would be a block."""
+        if not self._bins or whole <= 0:
+            return False
+        swing = self._swings[plot.path]
+        inside = [swing.high[:, k] - swing.low[:, k] for _, k in kept]
+        known = [part[np.isfinite(part)] for part in inside]
+        return any(len(part) and float(np.median(part)) > SWING * whole for part in known)
+
+    def _bands(self, plot: Plot, kept: list[tuple[str, int]]) -> tuple[np.ndarray, list[np.ndarray]]:
+        """The bins that hold anything, and the means (m,) of each curve in them."""
+        swing = self._swings[plot.path]
+        filled = np.flatnonzero(swing.count.max(1) > 0)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            means = [swing.total[filled, k] / swing.count[filled, k] for _, k in kept]
+        return filled, means
+
+    def _write_bands(self, plot: Plot, kept: list[tuple[str, int]]) -> None:
+        """Each curve as its mean in a band from the least to the largest value of each stretch."""
+        swing, picture = self._swings[plot.path], self._picture
+        filled, means = self._bands(plot, kept)
+        time = self._frame.start + (filled + 0.5) / self._bins * self._setting.duration
+        number = np.round((filled + 0.5) / self._bins * (self._setting.rows - 1)).astype(int)
+        index = timelines.time_columns(self._setting, number, time)
+        for place, (name, k) in enumerate(kept):
+            low, high = swing.low[filled, k], swing.high[filled, k]
+            color, path = list(plot.colors[k]), f"{plot.path}/{place}"
+            band = rr.Measurements.from_fields(
+                colors=[style.dim(color, BAND_SHADE)], widths=[0.0], names=[f"{name}, least to largest"]
+            )
+            picture.log_static(f"{path}/band", band)
+            columns = rr.Measurements.columns(values=0.5 * (low + high), variances=(0.5 * (high - low)) ** 2)
+            picture.log_columns(f"{path}/band", index, columns)
+            self._write_lines(f"{path}/mean", index, means[place][:, None], [f"{name}, mean"], [color])
+
+
+class Lanes:
+    """On and off: only the changes are written."""
 
     def __init__(self, picture: Picture, first: Run, frame: Frame, craft: CraftDrawing):
         self._picture = picture
-        most = FAR_ROWS if frame.sparse else PLOT_ROWS
-        self._picker = timelines.Picker(first.setting.rows, most, first.setting.duration)
-        self.plots = plots_of(first, frame, craft)
-        self.ranges: dict[str, tuple[float, float]] = {}
-        self._lanes = ["thrust", *(name for name, values in first.environment.items() if values.dtype == bool)]
+        self._names = [name for name, values in first.environment.items() if values.dtype == bool]
+        if craft.pushes:
+            self._names.insert(0, "thrust")
         self._state: dict[str, str] = {}
         self._time = frame.start  # s, of the last row so far
         self._far = np.inf if frame.sun else UNKNOWN * frame.period
-        self.changes = dict.fromkeys(self._lanes, 0)
-        dense = frame.turns > 60
-        width = style.WIDTH["dense plot" if dense else "plot"]
-        for plot in self.plots:
-            # the later curve lies on top: thinner, so that an equal one below it still shows
-            widths = [width * (1.6 if k < len(plot.names) - 1 else 1.0) for k in range(len(plot.names))]
-            lines = rr.SeriesLines(
-                names=list(plot.names),
-                colors=[list(color) for color in plot.colors],
-                widths=widths,
-                aggregation_policy=rr.components.AggregationPolicy.MinMax,  # the mean would hide an oscillation
-            )
-            picture.log_static(plot.path, lines)
-        for lane in self._lanes:
+        self._changes = dict.fromkeys(self._names, 0)
+        for lane in self._names:
             on, off = lane_style(craft.lane if lane == "thrust" else lane)
             picture.log_static(
-                f"/phase/{lane}",
+                lane_path(lane),
                 rr.StateConfiguration(
                     values=["on", "off", "unknown"],
                     labels=[on[0], off[0], "between far rows"],
@@ -58,51 +236,44 @@ class Curves:
                 ),
             )
 
+    @property
+    def shown(self) -> list[str]:
+        """Paths of the lanes that change, but not so often that nothing is read."""
+        return [lane_path(name) for name, changes in self._changes.items() if 0 < changes <= MOST_CHANGES]
+
     def add(self, run: Run) -> None:
         """A block of a run, all rows."""
-        drawn = self._picker.pick(run)
-        picked = timelines.take(run, drawn)
-        index = timelines.time_columns(run.setting, run.first + drawn, picked.time)
-        for plot in self.plots:
-            self._stretch(plot.path, plot.values(run))
-            if len(picked):
-                values = plot.values(picked)
-                self._picture.log_columns(
-                    plot.path, index, rr.Scalars.columns(scalars=np.where(np.isfinite(values), values, np.nan))
-                )
         far = np.diff(run.time, prepend=self._time) > self._far
-        for lane in self._lanes:
+        for lane in self._names:
             on = run.thrust.on if lane == "thrust" else run.environment[lane]
             states = np.where(np.asarray(on, bool), "on", "off")
-            self._add_lane(lane, run, np.where(far, "unknown", states) if lane == "sunlit" else states)
+            self._add(lane, run, np.where(far, "unknown", states) if lane == "sunlit" else states)
         self._time = float(run.time[-1])
 
-    def _stretch(self, path: str, values: np.ndarray) -> None:
-        for k in range(values.shape[1]):
-            finite = values[np.isfinite(values[:, k]), k]
-            if len(finite):
-                low, high = self.ranges.get(f"{path}:{k}", (np.inf, -np.inf))
-                self.ranges[f"{path}:{k}"] = (min(low, float(finite.min())), max(high, float(finite.max())))
-
-    def _add_lane(self, lane: str, run: Run, states: np.ndarray) -> None:
-        """Only the changes are written."""
+    def _add(self, lane: str, run: Run, states: np.ndarray) -> None:
         before = self._state.get(lane)
         changed = np.flatnonzero(np.concatenate([[before or ""], states[:-1]]) != states)
         self._state[lane] = str(states[-1])
         if len(changed):
-            self.changes[lane] += int(np.sum(states[changed] != "unknown")) - (before is None)
+            self._changes[lane] += int(np.sum(states[changed] != "unknown")) - (before is None)
             index = timelines.time_columns(run.setting, run.first + changed, run.time[changed])
-            self._picture.log_columns(f"/phase/{lane}", index, rr.StateChange.columns(state=states[changed].tolist()))
+            self._picture.log_columns(lane_path(lane), index, rr.StateChange.columns(state=states[changed].tolist()))
 
-    def reach(self, path: str) -> tuple[float, float]:
-        """Smallest and largest value that a plot has shown."""
-        pairs = [pair for key, pair in self.ranges.items() if key.rsplit(":", 1)[0] == path]
-        return (min(low for low, _ in pairs), max(high for _, high in pairs)) if pairs else (0.0, 1.0)
+
+def lane_path(lane: str) -> str:
+    """A word: the viewer writes the path on the lane."""
+    return f"/{LANE_NAMES.get(lane, lane)}"
 
 
 def lane_style(lane: str) -> tuple[tuple[str, Color], tuple[str, Color]]:
     """Word and colour of a lane's two states."""
     words = lane.replace("_", " ")
-    other = {"on": (words, style.SERIES[0]), "off": (f"no {words}", style.REFERENCE)}
+    other = {"on": (words, style.QUANTITY["switch"]), "off": (f"no {words}", style.REFERENCE)}
     states = style.LANES.get("light" if "sunlit" in lane else lane, other)
     return states["on"], states["off"]
+
+
+def words_of(setting: Setting) -> tuple[str, ...]:
+    """The words that a scene's own texts are made of."""
+    texts = " ".join((setting.title, setting.about, *setting.look_for)).lower()
+    return tuple("".join(letter if letter.isalpha() else " " for letter in texts).split())

@@ -1,4 +1,4 @@
-"""The words beside the picture: what it is, what to look for, where it comes from. Short, or the panel clips them."""
+"""The words beside the picture: what it is, what to look for, what is drawn. Short, or the panel clips them."""
 
 from __future__ import annotations
 
@@ -6,53 +6,53 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from sailviz.recording.drawing import style
 from sailviz.recording.drawing.arrival_plane import MILLI_AU
 from sailviz.run.arrays import Event, Setting
 
+WALL = "the **wall on the trail** is the push: its height and brightness say how hard, its lean says which way"
 
-def about(setting: Setting, notes: Iterable[str] = ()) -> str:
-    """Markdown. No heading: height is scarce; parameters run on in a line: a narrow panel would cut a table off.
 
-    notes : what colours mean, one line each
+def about(setting: Setting, notes: Iterable[str] = (), steady: Iterable[str] = (), aside: str = "") -> str:
+    """Markdown without a heading: the title stands over the line of the moment.
+
+    notes : what is drawn, one line each; steady : what is constant all along; aside : what is made up
     """
-    lines = [f"**{setting.title}**", "", setting.about.strip(), ""]
-    lines += [f"- {hint.strip()}" for hint in (*setting.look_for, *notes, *legend(setting))]
-    lines += scoreboard(setting)
-    facts = [f"{name} **{value}**" for name, value in setting.parameters]
-    if setting.thesis:
-        facts.append(f"thesis, section **{setting.thesis}**")
-    return "\n".join([*lines, "", " · ".join(facts)])
+    constants = list(steady)
+    ends = ["Steady all along: " + " · ".join(f"**{words}**" for words in constants)] if len(constants) > 1 else []
+    ends += [f"*{aside}*"] if aside else []
+    table = scoreboard(setting) if setting.ensembles else []
+    hints = [f"- {hint.strip()}" for hint in (*setting.look_for, *notes)]
+    parts = [[setting.about.strip()], table, hints, *([words] for words in ends)]
+    return "\n\n".join("\n".join(part) for part in parts if part)
 
 
 def event_line(event: Event) -> str:
     """An event with its time, in days or, early on, in a smaller unit."""
+    if " at t = " in event.name:
+        return event.name
     time = abs(event.time)
-    value, unit = (
-        (event.time / 86400, "d") if time >= 86400 else (event.time / 3600, "h") if time >= 3600 else (event.time, "s")
-    )
-    return f"{value:.4g} {unit}: {event.name}" if " at t = " not in event.name else event.name
+    if time < 3600:
+        return f"{event.time:.4g} s: {event.name}"
+    size, word = (86400.0, "day") if time >= 86400 else (3600.0, "hour")
+    return f"{word} {event.time / size:.4g}: {event.name}"
 
 
 def scoreboard(setting: Setting) -> list[str]:
-    """Lines of Markdown: how far each ensemble ends from the nominal flight, mean ± standard deviation."""
-    if not setting.ensembles:
-        return []
-    lines = ["", "| end − nominal | r, 10⁻³ au | azimuth, ° | out, km/s | across, km/s |", "|---|---|---|---|---|"]
-    factors = {0: 1 / MILLI_AU, 1: 180 / np.pi, 3: 1e-3, 4: 1e-3}
-    for ensemble in setting.ensembles:
+    """A table: how far each ensemble ends from the flight in a calm wind, mean ± standard deviation."""
+    ensembles = sorted(setting.ensembles, key=lambda ensemble: -ensemble.end_deviation[0])
+    words = style.ensemble_words(setting.ensembles)
+    far, whose = (1 / MILLI_AU, "0.001 au") if setting.body.name == "Sun" else (1e-3, "km")
+    lines = [
+        f"| colour | flights | end farther out by, {whose} | run ahead by | ensemble |",
+        "|---|---|---|---|---|",
+    ]
+    for ensemble in ensembles:
         off = ensemble.end_mean - ensemble.nominal[-1]
-        cells = [spread(off[k] * factor, ensemble.end_deviation[k] * factor) for k, factor in factors.items()]
-        lines.append(f"| **{ensemble.name}** | {' | '.join(cells)} |")
-    return lines
-
-
-def legend(setting: Setting) -> list[str]:
-    """What the colours mean, one line each."""
-    names = {0: "orange", 1: "green", 2: "pink", 3: "violet"}
-    lines = []
-    for k, ensemble in enumerate(setting.ensembles):
-        flights = f"{ensemble.flights:,} flights" + (", gPC" if ensemble.method == "polynomial-chaos" else "")
-        lines.append(f"**{names[k % 4]}**: {ensemble.name} ({ensemble.words}; {flights})")
+        out = spread(off[0] * far, ensemble.end_deviation[0] * far)
+        ahead = spread(np.degrees(off[1]), np.degrees(ensemble.end_deviation[1])).replace(" ±", "° ±") + "°"
+        how = "an expansion" if ensemble.method == "polynomial-chaos" else f"{ensemble.flights:,}"
+        lines.append(f"| **{words[ensemble.name]}** | {how} | {out} | {ahead} | {ensemble.name} |")
     return lines
 
 

@@ -12,17 +12,15 @@ import rerun as rr
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.craft import CraftDrawing
 from sailviz.recording.drawing.log import Picture, f4
-from sailviz.recording.drawing.sail_close_up import SailCloseUp
 from sailviz.recording.drawing.style import points
-from sailviz.recording.drawing.tether_close_up import TetherCloseUp
 from sailviz.shapes import sails, tethers
-from sailviz.shapes.primitives import circle
+from sailviz.shapes.primitives import circle, disc
 
 
 def log_square_sail(picture: Picture, path: str, near: bool) -> None:
     """Film seen from both sides: the sunward side is the back of a mesh whose front is the dark one."""
     film = sails.film()
-    picture.log_mesh(f"{path}/film_sun", film, style.FILM_SUN, side="back")
+    picture.log_mesh(f"{path}/film_lit", film, style.FILM_LIT, side="back")
     picture.log_mesh(f"{path}/film_dark", film, style.FILM_DARK, side="front")
     picture.log_mesh(f"{path}/booms", sails.booms(), style.BOOM)
     picture.log_mesh(f"{path}/bus", sails.bus(), style.BUS)
@@ -40,6 +38,7 @@ def log_electric_sail(picture: Picture, path: str, near: bool) -> None:
     picture.log_lines(f"{path}/tethers", [[0.03 * d, d] for d in out], style.TETHER, 0.9 if near else 0.7)
     picture.log_lines(f"{path}/rim", [circle()], style.dim(style.TETHER, 0.7), 0.7 if near else 0.55)
     picture.log_mesh(f"{path}/hub", tethers.wheel_hub(), style.BUS)
+    picture.log_mesh(f"{path}/disc", disc(0.0, 1.0, 72), style.WHEEL, shaded=False)
     if near:
         picture.log_mesh(f"{path}/tips", tethers.remote_unit(), style.BOOM)
         picture.log_static(f"{path}/tips", rr.InstancePoses3D(translations=f4(out), quaternions=f4(turns)))
@@ -87,42 +86,34 @@ def log_dot(picture: Picture, path: str, near: bool) -> None:
 CRAFT = {
     "solar-sail": CraftDrawing(
         log_shape=log_square_sail,
-        close_up=SailCloseUp,
-        size=0.24,
-        close_size=15.0,
+        size=0.20,
+        close_size=9.5,
         true_size=lambda craft: craft.side,
         facing=True,
-        normal_length=13.0,
+        flow_word="sunlight",
     ),
     "electric-sail": CraftDrawing(
         log_shape=log_electric_sail,
-        close_up=SailCloseUp,
+        size=0.13,
+        close_size=6.5,
         true_size=lambda craft: craft.tether_length,
         glow="shape/sheath",
         slanted=True,
-        flow=("solar wind", style.WIND),
+        sail_word="E-sail",
+        flow_word="wind",
+        flow_color=style.WIND,
     ),
     "plasma-brake": CraftDrawing(
         log_shape=log_satellite,
-        close_up=TetherCloseUp,
-        size_over_planet=0.14,
         close_size=5.0,
         true_size=lambda craft: craft.tether_length,
         tether=True,
         glow="tether/sheath",
         has_angles=False,
-        steers=False,
         descends=True,
-        force="Drag",
+        force="drag",
         lane="brake",
     ),
-    "thruster": CraftDrawing(
-        log_shape=log_thruster,
-        close_up=SailCloseUp,
-        close_size=8.0,
-        close_name="Thruster",
-        glow="shape/plume",
-        normal_length=None,
-    ),
-    "none": CraftDrawing(log_shape=log_dot, close_up=SailCloseUp, size=0.0, close_size=1.0, steers=False),
+    "thruster": CraftDrawing(log_shape=log_thruster, close_size=8.0, close_name="Thruster", glow="shape/plume"),
+    "none": CraftDrawing(log_shape=log_dot, size=0.0, close_size=1.0, has_angles=False, pushes=False),
 }

@@ -1,7 +1,7 @@
-"""The picture of a run, put together: world, close-up, curves, words, and the blueprint that shows them.
+"""The picture of a run: gathered block by block, drawn once it is known how the flight ends.
 
-Whole groups of drawn rows are written as they come; what depends on how far the run reaches is written after the first
-block and, where that has changed, once more at the end. So neither memory nor the digest depends on the blocks.
+Of all rows the few that are drawn are kept, and the curves' values; so memory is flat, and nothing that is drawn
+depends on the blocks in which the run arrived.
 """
 
 from __future__ import annotations
@@ -10,16 +10,24 @@ import numpy as np
 import rerun as rr
 
 from sailviz.recording import timelines
+from sailviz.recording.drawing.arrival_plane import arrivals_of
 from sailviz.recording.drawing.blueprint import blueprint
-from sailviz.recording.drawing.curves import Curves
-from sailviz.recording.drawing.description import about, event_line
+from sailviz.recording.drawing.curves import Curves, words_of
+from sailviz.recording.drawing.description import WALL, about, event_line
 from sailviz.recording.drawing.devices import CRAFT
+from sailviz.recording.drawing.ensemble_plots import plots_of_ensembles
 from sailviz.recording.drawing.ensembles import log_ensembles
-from sailviz.recording.drawing.layout import Extents, Layout, lay_out
+from sailviz.recording.drawing.layout import Layout
 from sailviz.recording.drawing.log import Index, Picture
+from sailviz.recording.drawing.low_orbit import log_low_orbit, orbit_words
+from sailviz.recording.drawing.now_line import log_now
+from sailviz.recording.drawing.sail_close_up import log_close_up
 from sailviz.recording.drawing.samples import Frame, Samples
-from sailviz.recording.drawing.system_view import LADDER, STRIP, SystemView
+from sailviz.recording.drawing.story import Story, reach_of
+from sailviz.recording.drawing.system_view import log_system, system_words
 from sailviz.run.arrays import Event, Run, join
+
+PLAY = {False: 30.0, True: 40.0}  # s that a replay takes, by whether it is a low orbit
 
 
 class Drawing:
@@ -28,48 +36,27 @@ class Drawing:
     def __init__(self, stream: rr.RecordingStream, first: Run):
         setting, picture = first.setting, Picture(stream)
         self._stream, self._setting, self._picture = stream, setting, picture
-        self._waiting: Run | None = None  # drawn rows that do not fill a piece of trail yet
-        self._numbers = np.empty(0, int)
-        self._drawn = -1  # number of the last row drawn
-        self._before = np.full(2, -np.inf)  # s, times of the last two rows drawn
-        self._rung = 0  # number of the next orbit of the ladder
-        self._layout: Layout | None = None
-        self._extents = Extents(first)
         self._frame = Frame.of(first)
         self._picker = timelines.Picker(self._frame.rows, self._frame.most, self._frame.duration)
+        self._rows: list[Run] = []
+        self._numbers: list[np.ndarray] = []
+        self._events: list[Event] = []
         self._craft = CRAFT[setting.craft.kind]
-        self._system = SystemView(picture, first, self._frame, self._craft)
-        self._close_up = self._craft.close_up(picture, first, self._craft)
         self._curves = Curves(picture, first, self._frame, self._craft)
-        if setting.ensembles:
-            log_ensembles(picture, setting, self._frame)
-        text = about(setting, self._system.notes)
-        picture.log_static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
         start = timelines.time_columns(setting, [first.first], first.time[:1])
         picture.log_columns("/log", start, rr.TextLog.columns(text=["start"], level=[rr.TextLogLevel.INFO]))
 
     def add(self, block: Run) -> None:
         """The next rows."""
-        self._extents.add(block)
         self._curves.add(block)
-        self._add_ladder(block)
         picked = self._picker.pick(block)
-        self._wait(timelines.take(block, picked), block.first + picked)
-        self._draw(len(self._numbers) // STRIP * STRIP)
-        if self._layout is None:
-            self._show()
-
-    def finish(self, last: Run) -> None:
-        """Draw what still waits and the last row of all, and size everything for good."""
-        if last.first not in (self._drawn, *self._numbers[-1:]):
-            self._wait(last, np.array([last.first]))
-        self._draw(len(self._numbers))
-        self._system.finish(Samples.of(last, np.array([last.first]), self._frame))
-        self._extents.finished = True
-        self._show()
+        if len(picked):
+            self._rows.append(timelines.take(block, picked))
+            self._numbers.append(block.first + picked)
 
     def add_events(self, events: list[Event], index: Index) -> None:
         """Lines for what has happened."""
+        self._events += events
         texts = [event_line(event) for event in events]
         levels = [
             rr.TextLogLevel.WARN if "interrupted" in text or " at t = " in text else rr.TextLogLevel.INFO
@@ -77,38 +64,51 @@ class Drawing:
         ]
         self._picture.log_columns("/log", index, rr.TextLog.columns(text=texts, level=levels))
 
-    def _add_ladder(self, block: Run) -> None:
-        """Rows at even times, or the first ones after."""
-        rung = (block.time - self._frame.start) / self._setting.duration * LADDER + 1e-9
-        steps = np.floor(rung).astype(int)
-        wanted = np.flatnonzero(np.diff(steps, prepend=self._rung - 1) > 0)
-        self._rung = int(steps[-1]) + 1
-        self._system.add_ladder(Samples.of(timelines.take(block, wanted), block.first + wanted, self._frame))
-
-    def _wait(self, run: Run, numbers: np.ndarray) -> None:
-        if len(numbers):
-            self._waiting = run if self._waiting is None else join([self._waiting, run])
-            self._numbers = np.concatenate([self._numbers, numbers])
-
-    def _draw(self, count: int) -> None:
-        """Draw the first `count` of the rows that wait."""
-        if count == 0 or self._waiting is None:
-            return
-        run, numbers = timelines.take(self._waiting, slice(0, count)), self._numbers[:count]
-        samples = Samples.of(run, numbers, self._frame, self._before)
-        self._before = np.concatenate([self._before, samples.run.time])[-2:]
-        self._system.add(samples)
-        self._close_up.add(samples)
-        self._drawn = int(self._numbers[count - 1])
-        self._numbers = self._numbers[count:]
-        self._waiting = timelines.take(self._waiting, slice(count, None)) if len(self._numbers) else None
-
-    def _show(self) -> None:
-        """Size what depends on the run's reach, and lay out the views, unless both are as they were."""
-        layout = lay_out(self._setting, self._frame, self._extents, self._curves, self._craft, self._close_up)
-        if layout == self._layout:
-            return
-        self._layout = layout
-        self._system.size(layout)
-        self._close_up.size(layout)
+    def finish(self, last: Run) -> None:
+        """Draw the run; last : its last row, which is always drawn."""
+        if not self._numbers or self._numbers[-1][-1] != last.first:
+            self._rows.append(last)
+            self._numbers.append(np.array([last.first]))
+        run = join(self._rows)
+        samples = Samples.of(run, np.concatenate(self._numbers), self._frame)
+        reach = reach_of(self._setting, run) / self._frame.unit
+        story = Story(samples, self._frame, self._craft, tuple(self._events), reach)
+        layout, notes, aside = self._draw(story, last)
+        steady = self._curves.steady()
+        text = about(self._setting, notes, steady, aside)
+        self._picture.log_static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
+        log_now(self._picture, story)
         self._stream.send_blueprint(blueprint(layout), make_active=True, make_default=True)
+
+    def _draw(self, story: Story, last: Run) -> tuple[Layout, list[str], str]:
+        """Write space and curves -> the layout, what is said about the drawing, and what of it is made up."""
+        setting, picture = self._setting, self._picture
+        plots = self._curves.finish(last, setting.plots, words_of(setting))
+        bars = any(ensemble.method == "monte-carlo" for ensemble in setting.ensembles)
+        if setting.ensembles:
+            plots = [*plots_of_ensembles(setting), *plots]
+        if story.frame.low:
+            spaces, close, spans = log_low_orbit(picture, story)
+            notes, aside = orbit_words(story), ""
+        else:
+            spaces, spans, aside = log_system(picture, story)
+            close = log_close_up(picture, story, 3 if bars else min(len(plots), 2))
+            notes = [WALL] if story.most > 0 else []
+            notes += system_words(story)
+        if setting.ensembles:
+            spans |= log_ensembles(picture, setting, self._frame)
+        duration = max(story.duration, 1e-9)
+        layout = Layout(
+            title=setting.title,
+            spaces=spaces,
+            close=close,
+            plots=plots,
+            lanes=self._curves.lanes,
+            arrivals=arrivals_of(setting) if setting.ensembles else (),
+            bars=bars,
+            spans=spans,
+            timelines=("sim_time", "step") if setting.epoch is None else ("sim_time", "utc", "step"),
+            speed=duration / (setting.play_duration or PLAY[story.frame.low]),
+            rows_per_second=max(last.first, 1) / duration,
+        )
+        return layout, notes, aside

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,8 +13,7 @@ from sailviz.recording.contract import word
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.arrival_plane import MILLI_AU
 from sailviz.recording.drawing.log import Color, Index, Picture
-from sailviz.recording.drawing.plot_column import PlotView, Slot
-from sailviz.recording.drawing.plots import nice_range
+from sailviz.recording.drawing.plot_column import PlotView, nice_range
 from sailviz.run.arrays import EnsembleStatistics, Setting
 
 
@@ -30,22 +28,25 @@ class Band:
 
 
 BANDS = {
-    "radius_m": Band("radius_m", "Distance from the Sun less nominal [10⁻³ au]", 1 / MILLI_AU, 0),
-    "axis_distance_m": Band("axis_distance_m", "Distance from the axis less nominal [10⁻³ au]", 1 / MILLI_AU, 0),
-    "height_m": Band("height_m", "Height less nominal [10⁻³ au]", 1 / MILLI_AU, 2),
-    "azimuth_rad": Band("azimuth_rad", "Azimuth less nominal [deg]", 180 / np.pi, 1),
-    "transverse_speed_m_s": Band("transverse_speed_m_s", "Transverse speed less nominal [km/s]", 1e-3, 4),
-    "radial_speed_m_s": Band("radial_speed_m_s", "Radial speed less nominal [km/s]", 1e-3, 3),
-    "thrust_factor": Band("thrust_factor", "Thrust over nominal", 1.0, None),
-    "thrust_voltage_V": Band("thrust_voltage_V", "Tether voltage [kV]", 1e-3, None),
-    "solar_wind_pressure_Pa": Band("solar_wind_pressure_Pa", "Solar-wind dynamic pressure at 1 au [nPa]", 1e9, None),
-    "irradiance_W_m2": Band("irradiance_W_m2", "Irradiance at 1 au [W/m²]", 1.0, None),
-    "electrochromic_state": Band("electrochromic_state", "Electrochromic area: 0 black, 1 mirror", 1.0, None),
+    "radius_m": Band("radius_m", "Distance from the Sun, less the calm flight's [0.001 au]", 1 / MILLI_AU, 0),
+    "axis_distance_m": Band(
+        "axis_distance_m", "Distance from the axis, less the calm flight's [0.001 au]", 1 / MILLI_AU, 0
+    ),
+    "height_m": Band("height_m", "Height, less the calm flight's [0.001 au]", 1 / MILLI_AU, 2),
+    "azimuth_rad": Band("azimuth_rad", "Azimuth, less the calm flight's [deg]", 180 / np.pi, 1),
+    "transverse_speed_m_s": Band("transverse_speed_m_s", "Transverse speed, less the calm flight's [km/s]", 1e-3, 4),
+    "radial_speed_m_s": Band("radial_speed_m_s", "Radial speed, less the calm flight's [km/s]", 1e-3, 3),
+    "thrust_factor": Band("thrust_factor", "Push over that in the calm wind", 1.0, None),
+    "thrust_voltage_V": Band("thrust_voltage_V", "Voltage of the tethers [kV]", 1e-3, None),
+    "solar_wind_pressure_Pa": Band("solar_wind_pressure_Pa", "Pressure of the solar wind at 1 au [nPa]", 1e9, None),
+    "irradiance_W_m2": Band("irradiance_W_m2", "Sunshine at 1 au [W/m²]", 1.0, None),
+    "electrochromic_state": Band("electrochromic_state", "Mirror share of the film's edge", 1.0, None),
 }
 PLACES = ("radius_m", "axis_distance_m", "azimuth_rad", "height_m")
-OWN = ("solar_wind_pressure_Pa", "irradiance_W_m2", "thrust_voltage_V", "thrust", "angles")  # the craft's own curves
 DRIVERS = ("solar_wind_pressure_Pa", "irradiance_W_m2")
 SPEEDS = ("transverse_speed_m_s", "radial_speed_m_s")
+SET = ("thrust_voltage_V", "electrochromic_state", "thrust_factor")
+BINS, BAR_ROWS = 16, 160
 
 
 def band_values(ensemble: EnsembleStatistics, band: Band) -> np.ndarray:
@@ -130,52 +131,70 @@ def log_limits(picture: Picture, ensemble: EnsembleStatistics, index: Index) -> 
             log_filled(picture, beyond, index, middle, half, "saturated", style.FAULT)
 
 
-def log_histogram(picture: Picture, ensemble: EnsembleStatistics, index: Index, color: Color) -> None:
-    """How many of the flights, %, are how far from the nominal one."""
-    edges = ensemble.histogram_edges / MILLI_AU
+def log_bars(picture: Picture, setting: Setting, words: dict[str, str]) -> None:
+    """How many of the flights, %, are how far from the calm one: the ensembles' bars side by side, so that where they
+    overlap nothing is hidden."""
+    ensembles = [e for e in setting.ensembles if e.method == "monte-carlo"]
+    if not ensembles:
+        return
+    ensembles.sort(key=lambda e: -e.end_deviation[0])
+    farthest = max(far_edge(e) for e in ensembles)
+    edges = np.linspace(0.0, farthest, BINS + 1)
+    wide = edges[1] / len(ensembles)
     middle = 0.5 * (edges[1:] + edges[:-1])
-    picture.log_bars(f"/histogram/{word(ensemble.name)}", index, 100 * ensemble.histogram, middle, [*color, 255])
+    for k, ensemble in enumerate(ensembles):
+        some = np.unique(np.linspace(0, len(ensemble.time) - 1, BAR_ROWS).astype(int))
+        heights = 100 * rebinned(ensemble, edges)[some]
+        centers = (middle + (k - 0.5 * (len(ensembles) - 1)) * 0.9 * wide) / MILLI_AU
+        color = [*style.ensemble_color(words[ensemble.name]), 255]
+        index = timelines.time_columns(setting, ensemble.step[some], ensemble.time[some])
+        path = f"/flights/{word(ensemble.name)}"
+        picture.log_bars(path, index, heights, centers, color, 0.82 * wide / MILLI_AU)
 
 
-def slots_of(
-    setting: Setting, shown: Sequence[PlotView], environment: Sequence[Sequence[PlotView]]
-) -> tuple[Slot, ...]:
-    """The column of curves of a run with ensembles; what the craft itself did stands behind, as tabs."""
+def far_edge(ensemble: EnsembleStatistics) -> float:
+    """The distance from the calm flight, m, within which all but a few flights end."""
+    filled = np.flatnonzero(ensemble.histogram[-1] > 0.002)
+    last = int(filled[-1]) + 1 if len(filled) else 1
+    return float(ensemble.histogram_edges[min(last, len(ensemble.histogram_edges) - 1)])
+
+
+def rebinned(ensemble: EnsembleStatistics, edges: np.ndarray) -> np.ndarray:
+    """Shares (n, b) between coarser edges (b + 1,) m: a flight counts where the middle of its own bin lies, and in the
+    last where it is farther."""
+    own = 0.5 * (ensemble.histogram_edges[1:] + ensemble.histogram_edges[:-1])
+    place = np.clip(np.searchsorted(edges, own, side="right") - 1, 0, len(edges) - 2)
+    found = np.zeros((len(ensemble.histogram), len(edges) - 1))
+    for b in range(found.shape[1]):
+        found[:, b] = ensemble.histogram[:, place == b].sum(1)
+    return found
+
+
+def plots_of_ensembles(setting: Setting) -> list[PlotView]:
+    """The curves of a run with ensembles, most telling first: where they are, how fast, what drives them."""
     keys = [key for key in BANDS if any(key in ensemble.percentiles for ensemble in setting.ensembles)]
-    own = {plot.paths[0]: plot for plot in (*shown, *(plot for group in environment for plot in group))}
-
-    def view(key: str) -> PlotView:
-        values = np.concatenate([band_values(c, BANDS[key]).ravel() for c in setting.ensembles if key in c.percentiles])
-        paths = [f"/plots/ensemble/{key}/**"]
-        low, high = float(values.min()), float(values.max())
-        if key == "thrust_voltage_V":
-            limits = [c.limits.get("maximum_voltage_V", 0.0) for c in setting.ensembles]
-            low, high = min(low, 0.0), max(high, 1.08e-3 * max(limits))
-        if key in DRIVERS:
-            driven = [c for c in setting.ensembles if key in c.one]
-            one = np.concatenate([BANDS[key].factor * ensemble.one[key] for ensemble in driven])
-            low, high = min(low, one.min()), max(high, one.max())
-        low, high = nice_range(low, high)
-        return PlotView(BANDS[key].title, tuple(paths), low, high)
-
-    def group(*names: str) -> list[PlotView]:
-        return [view(key) for key in names if key in keys]
-
-    places, speeds = group(*PLACES), group(*SPEEDS)
-    acting = group(*DRIVERS)
-    setting_it = group("thrust_voltage_V", "electrochromic_state")
+    wanted = [key for group in (PLACES, SPEEDS, DRIVERS, SET) for key in group if key in keys]
+    views = [view for key in wanted if (view := band_view(setting, key)) is not None]
     if any(ensemble.control in ("pressure", "distance") for ensemble in setting.ensembles):
         top = 100 * max(float(ensemble.saturated.max()) for ensemble in setting.ensembles)
-        low, high = nice_range(0.0, max(top, 1.0))
-        setting_it.append(PlotView("Flights at the largest voltage [%]", ("/plots/ensemble/saturated/**",), low, high))
-    pushing = group("thrust_factor")
-    rest = list(own.values())
-    flown = [plot for plot in rest if plot.paths[0] == "/plots/distance"]
-    own_curves = {path: [plot for plot in rest if plot.paths[0] == f"/plots/{path}"] for path in OWN}
-    columns = [
-        (places[:2] + speeds[:1] + flown, 3.0),
-        (acting + own_curves["solar_wind_pressure_Pa"] + own_curves["irradiance_W_m2"], 2.2),
-        (setting_it + own_curves["thrust_voltage_V"], 2.4),
-        (pushing + own_curves["thrust"] + own_curves["angles"], 2.2),
-    ]
-    return tuple(Slot(tuple(plots), share) for plots, share in columns if plots)
+        if top > 0:
+            low, high = nice_range(0.0, top)
+            views.append(PlotView("Flights at the largest voltage [%]", ("/plots/ensemble/saturated/**",), low, high))
+    return views
+
+
+def band_view(setting: Setting, key: str) -> PlotView | None:
+    """A quantity of all ensembles; None where nothing of it varies."""
+    values = np.concatenate([band_values(c, BANDS[key]).ravel() for c in setting.ensembles if key in c.percentiles])
+    low, high = float(values.min()), float(values.max())
+    if key == "thrust_voltage_V":
+        limits = [c.limits.get("maximum_voltage_V", 0.0) for c in setting.ensembles]
+        low, high = min(low, 0.0), max(high, 1.08e-3 * max(limits))
+    if key in DRIVERS:
+        driven = [c for c in setting.ensembles if key in c.one]
+        one = np.concatenate([BANDS[key].factor * ensemble.one[key] for ensemble in driven])
+        low, high = min(low, one.min()), max(high, one.max())
+    if high - low <= 1e-9 * max(abs(low), abs(high)):
+        return None
+    low, high = nice_range(low, high)
+    return PlotView(BANDS[key].title, (f"/plots/ensemble/{key}/**",), low, high)

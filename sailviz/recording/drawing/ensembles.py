@@ -1,8 +1,7 @@
 """Many flights at once: their paths up to now, where they are, ellipses about their mean, percentiles, histograms.
 
 All of it is known when the run begins and written at once. Colours tell ensembles apart everywhere; white is nominal.
-/arrival shows the distance of the flights from the nominal one, each axis with a
-scale of its own.
+/arrival shows the distance of the flights from the nominal one, each axis with a scale of its own.
 """
 
 from __future__ import annotations
@@ -14,7 +13,8 @@ from sailviz.recording import contract, timelines
 from sailviz.recording.contract import word
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.arrival_plane import SIGMAS, arrivals_of, ellipses, log_arrival, log_arrival_axes
-from sailviz.recording.drawing.ensemble_plots import log_ensemble_plots, log_histogram
+from sailviz.recording.drawing.ensemble_plots import log_bars, log_ensemble_plots
+from sailviz.recording.drawing.layout import SO_FAR, Span
 from sailviz.recording.drawing.log import Color, Index, Picture, f4
 from sailviz.recording.drawing.samples import Frame
 from sailviz.recording.drawing.style import points
@@ -23,20 +23,18 @@ from sailviz.run.arrays import EnsembleStatistics, Setting
 PIECE = 3  # rows of an ensemble in one piece of its paths
 BENT = 0.8  # rad that an ellipse may reach along the orbit to be drawn in space
 TUBE_ALPHA = 16
+PATHS = 40  # of an ensemble that are drawn
+AWAY, INSIDE = 0.05, 0.86  # of the reach, from where an ensemble has a name of its own, and where that stands
 
 
-def color_of(k: int) -> list[int]:
-    """Of the k-th ensemble: blue is the craft's own trail."""
-    return style.SERIES[1 + k % 4]
-
-
-def log_ensembles(picture: Picture, setting: Setting, frame: Frame) -> None:
-    """Everything about the ensembles of a run: their numbers, their flights in space, their curves, their arrival."""
-    arrivals = arrivals_of(setting)
+def log_ensembles(picture: Picture, setting: Setting, frame: Frame) -> dict[str, Span]:
+    """Everything about the ensembles of a run: their numbers, their flights in space, their curves, their arrival ->
+    the spans that views show."""
+    arrivals, words = arrivals_of(setting), style.ensemble_words(setting.ensembles)
     for arrival in arrivals:
         log_arrival_axes(picture, arrival)
     for k, ensemble in enumerate(setting.ensembles):
-        color, index = color_of(k), index_of(setting, ensemble)
+        color, index = style.ensemble_color(words[ensemble.name]), index_of(setting, ensemble)
         table = contract.columns("/ensemble", contract.ensemble_table(ensemble))
         picture.log_columns(contract.ensemble_path(ensemble), index, table)
         picture.log_static(f"{contract.ensemble_path(ensemble)}/facts", contract.ensemble_facts(ensemble))
@@ -45,11 +43,26 @@ def log_ensembles(picture: Picture, setting: Setting, frame: Frame) -> None:
         if ensemble.planar:
             log_tube(picture, ensemble, color, frame.unit)
         log_ensemble_plots(picture, setting, ensemble, index, color, first=k == 0)
-        if ensemble.method == "monte-carlo":
-            log_histogram(picture, ensemble, index, color)
         for arrival in arrivals:
             log_arrival(picture, arrival, ensemble, index, color)
+    log_bars(picture, setting, words)
+    log_widest(picture, setting, words, frame.unit)
     log_nominal(picture, setting, frame.unit)
+    paths = [f"/world/cloud/{word(ensemble.name)}/flights" for ensemble in setting.ensembles]
+    return dict.fromkeys([*paths, "/world/nominal/path"], SO_FAR)
+
+
+def log_widest(picture: Picture, setting: Setting, words: dict[str, str], length: float) -> None:
+    """The name of the widest ensemble where it is, once it has left the calm flight."""
+    widest = max(setting.ensembles, key=lambda ensemble: ensemble.end_deviation[0])
+    mean, calm = (widest.places(states) / length for states in (widest.mean, widest.nominal))
+    reach = float(np.linalg.norm(calm, axis=1).max())
+    away = np.linalg.norm(mean - calm, axis=1) > AWAY * reach
+    picture.log_label_style(
+        "/world/cloud_name", style.ensemble_color(words[widest.name]), f"flights with {widest.name}"
+    )
+    place = np.where(away[:, None], INSIDE * mean, np.nan)
+    picture.log_labels("/world/cloud_name", index_of(setting, widest), place)
 
 
 def index_of(setting: Setting, ensemble: EnsembleStatistics, some: slice | np.ndarray = slice(None)) -> Index:
@@ -67,9 +80,9 @@ def log_flights(picture: Picture, setting: Setting, ensemble: EnsembleStatistics
     """The paths of the flights that are drawn, and where they are. length : m of one view unit."""
     path = f"/world/cloud/{word(ensemble.name)}"
     places = ensemble.places(ensemble.kept) / length  # (k, n, 3)
-    picture.log_strip_style(f"{path}/flights", style.dim(color, 0.5), style.WIDTH["flight"])
+    picture.log_strip_style(f"{path}/flights", style.dim(color, 0.42), style.WIDTH["flight"])
     starts, ends = pieces(len(ensemble.time))
-    groups = [list(places[:, a : b + 1]) for a, b in zip(starts, ends, strict=True)]
+    groups = [list(places[:PATHS, a : b + 1]) for a, b in zip(starts, ends, strict=True)]
     picture.log_broken_strips(f"{path}/flights", index_of(setting, ensemble, ends), groups)
     picture.log_static(
         f"{path}/now",
@@ -112,6 +125,6 @@ def log_nominal(picture: Picture, setting: Setting, length: float) -> None:
     picture.log_broken_strips("/world/nominal/path", index_of(setting, ensemble, ends), strips)
     picture.log_static("/world/nominal/place", rr.Points3D.from_fields(radii=points(3.4), colors=[style.NOMINAL]))
     picture.log_columns("/world/nominal/place", index, rr.Points3D.columns(positions=f4(line)))
-    picture.log_label_style("/world/nominal/name", style.NOMINAL, "nominal")
+    picture.log_label_style("/world/nominal/name", style.NOMINAL, "calm flight")
     outwards = line * (1 + 0.10 * np.abs(line).max() / np.maximum(np.linalg.norm(line, axis=1), 1e-9))[:, None]
     picture.log_labels("/world/nominal/name", index, outwards)

@@ -64,9 +64,11 @@ class Picture:
             path, rr.LineStrips3D([f4(strip) for strip in strips], colors=[list(color)], radii=points(width))
         )
 
-    def log_bars(self, path: str, index: Index, heights: ArrayLike, centers: np.ndarray, color: Color) -> None:
-        """heights (n, b): one bar chart a row, its bars over centers (b,), evenly spaced."""
-        width = np.full(len(centers), 0.92 * (centers[1] - centers[0]))
+    def log_bars(
+        self, path: str, index: Index, heights: ArrayLike, centers: np.ndarray, color: Color, wide: float
+    ) -> None:
+        """heights (n, b): one bar chart a row, its bars `wide` over centers (b,)."""
+        width = np.full(len(centers), wide)
         charts = [rr.BarChart(row, abscissa=centers, widths=width, color=list(color)) for row in np.asarray(heights)]
         batches = [{b.component_descriptor(): b for b in chart.as_component_batches()} for chart in charts]
         constant = [d for d in batches[0] if d.component != "BarChart:values"]

@@ -6,6 +6,7 @@ of years can be compared, although the orbits themselves lie across each other. 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ import rerun as rr
 from sailviz.frames import quaternion, to_frame, unit
 from sailviz.recording.contract import word
 from sailviz.recording.drawing import style
-from sailviz.recording.drawing.log import Picture, f4
+from sailviz.recording.drawing.log import Index, Picture, f4
 from sailviz.recording.drawing.samples import Frame, Samples, rings
 from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Run, Shell
@@ -31,13 +32,8 @@ class OrbitPlane:
     def __init__(self, picture: Picture, first: Run, frame: Frame, ladder: int):
         self._picture, self._frame, self._ladder = picture, frame, ladder
         self._day = 86400.0 if frame.duration > 3 * 86400 else 3600.0
-        # with close rows there is a trail: a line on it would tear
-        self._orbits = ("/world/orbit", "/world/plane/orbit") if frame.sparse else ("/world/plane/orbit",)
-        for path in self._orbits:
-            picture.log_static(
-                path,
-                rr.LineStrips3D.from_fields(strips=[f4(circle(CIRCLE))], radii=points(style.WIDTH["recent"] * 0.8)),
-            )
+        ring = rr.LineStrips3D.from_fields(strips=[f4(circle(CIRCLE))], radii=points(style.WIDTH["recent"] * 0.8))
+        picture.log_static("/world/plane/orbit", ring)
         picture.log_strip_style("/world/plane/ladder", None, style.WIDTH["ladder"])
         picture.log_label_style("/world/plane/now", style.CRAFT)
         picture.log_static("/world/plane/rungs", rr.Points3D.from_fields(radii=points(style.ANCHOR), show_labels=True))
@@ -49,23 +45,22 @@ class OrbitPlane:
         picture, index, run = self._picture, samples.index, samples.run
         axes = plane_axes(run)
         picture.log_pose("/world/plane", index, quaternion=quaternion(axes))
-        identity = np.broadcast_to(np.eye(3), axes.shape)
-        for path in self._orbits:
-            turned = axes if path == "/world/plane/orbit" else identity
-            values: dict[str, Any] = {name: f4(value) for name, value in rings(run, turned, self._frame).items()}
-            ramp = rr.LineStrips3D.columns(colors=np.asarray(colors, np.uint32))
-            picture.log_columns(path, index, [*rr.Transform3D.columns(**values), *ramp])
+        values: dict[str, Any] = {name: f4(value) for name, value in rings(run, axes, self._frame).items()}
+        ramp = rr.LineStrips3D.columns(colors=np.asarray(colors, np.uint32))
+        picture.log_columns("/world/plane/orbit", index, [*rr.Transform3D.columns(**values), *ramp])
         radius = run.elements.semi_major_axis / self._frame.unit
         texts = [f"{altitude:.0f} km" for altitude in (radius - 1) * self._frame.unit / 1e3]
         picture.log_labels("/world/plane/now", index, np.stack([radius, 0 * radius, 0 * radius], 1), texts)
 
-    def add_ladder(self, samples: Samples, colors: np.ndarray) -> None:
-        """Orbits far apart in time, turned into one plane, every other one with its age and altitude."""
-        run = samples.run
+    def add_ladder(
+        self, run: Run, index_of: Callable[[np.ndarray], Index], rows: np.ndarray, colors: np.ndarray
+    ) -> None:
+        """Orbits far apart in time, turned into one plane, every other one with its age and altitude. rows (k,) of the
+        drawn ones, of which `run` has the numbers."""
         placed = rings(run, plane_axes(run), self._frame)
         lines = placed["scale"][:, None] * circle(CIRCLE)
         lines = turned_by(placed["quaternion"], lines) + placed["translation"][:, None]
-        self._picture.log_strips("/world/plane/ladder", samples.index, lines, colors)
+        self._picture.log_strips("/world/plane/ladder", index_of(rows), lines, colors)
         radius = run.elements.semi_major_axis / self._frame.unit
         rung = np.round((run.time - self._frame.start) / self._frame.duration * self._ladder)
         height = STAIRS * (self._frame.origin_radius - 1)
@@ -78,7 +73,7 @@ class OrbitPlane:
             place = np.stack([np.sqrt(np.clip(radius**2 - across**2, 0, None)), across, 0 * across], 1)
             colors = np.asarray(colors, np.uint32)[named]
             columns = rr.Points3D.columns(positions=f4(place[named]), labels=[texts[k] for k in named], colors=colors)
-            self._picture.log_columns("/world/plane/rungs", samples.index_of(named), columns)
+            self._picture.log_columns("/world/plane/rungs", index_of(rows[named]), columns)
 
 
 def plane_axes(run: Run) -> np.ndarray:
@@ -135,16 +130,10 @@ def shares(value: np.ndarray) -> np.ndarray:
     return np.asarray(np.nan_to_num((value - low) / (high - low)) if high > low else np.ones_like(value))
 
 
-def notes(run: Run, frame: Frame, ladder: int) -> list[str]:
-    """What the colours of orbits and maps mean, for the description."""
-    start = (frame.origin_radius - 1) * frame.unit / 1e3
-    day, name = (86400.0, "d") if frame.duration > 3 * 86400 else (3600.0, "h")
-    every = frame.duration / ladder / day
-    lines = [
-        f"orbit: **blue** at {start:.0f} km, pale at {0.75 * start:.0f} km, **orange** at the ground; "
-        f"a faint ring every {every:.4g} {name}"
-    ]
+def shell_words(run: Run) -> list[str]:
+    """What the maps show, for the description."""
+    lines = []
     for shell in run.setting.shells:
         low, high = float(np.nanmin(shell.value)), float(np.nanmax(shell.value))
-        lines.append(f"**violet** band: {shell.name}, {low:.0e} to {high:.0e} {shell.unit}, as round the first orbit")
+        lines.append(f"in Descent the **violet** band is the {shell.name}: {low:.0e} to {high:.0e} {shell.unit}")
     return lines

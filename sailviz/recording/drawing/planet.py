@@ -13,25 +13,25 @@ from sailviz.recording.drawing import style
 from sailviz.recording.drawing.log import Picture
 from sailviz.recording.drawing.samples import Samples
 from sailviz.recording.drawing.style import points
-from sailviz.run.arrays import Run
+from sailviz.run.arrays import Setting
 from sailviz.shapes.planets import globe
 from sailviz.shapes.primitives import Trimesh, ball, cap, scaled, tube
 from sailviz.shipped import shipped_folder
 
 NIGHT_EDGES = np.radians(np.linspace(100, 78, 16))  # half-angles of what darkens: together a soft terminator
-NIGHT_RADIUS = 1.0035  # so that it lies on the ground and not in it
-NIGHT_ALPHA = 55 / 255  # of each of them, one over the other
-HALO = ((1.012, 80), (1.025, 48), (1.042, 28), (1.065, 14))  # radius, alpha
+NIGHT_RADIUS = 1.0022  # so that it lies on the ground and not in it
+NIGHT_ALPHA, DARKEST = 38 / 255, 0.60  # of each of them, one over the other, so that the ground stays readable
+HALO = ((1.004, 74), (1.009, 54), (1.015, 38), (1.022, 25), (1.031, 15), (1.042, 8), (1.055, 4))  # radius, alpha
 
 
 class Planet:
     """Writes /world/center, /world/night and /world/season, a frame that turns about the axis with the Sun."""
 
-    def __init__(self, picture: Picture, first: Run):
+    def __init__(self, picture: Picture, setting: Setting, day_and_night: bool):
         self._picture = picture
-        log_planet(picture, "/world/center/globe", first.setting.body.name)
-        log_air(picture, "/world/center/air", ball())
-        if "Sun" in first.bodies:
+        log_planet(picture, "/world/center/globe", setting.body.name)
+        log_air(picture, "/world/center/air", ball(36, 72))
+        if day_and_night:
             log_night(picture)
 
     def add(self, samples: Samples) -> None:
@@ -55,13 +55,13 @@ def about_axis(angle: np.ndarray) -> np.ndarray:
 
 def log_planet(picture: Picture, path: str, name: str) -> None:
     """A planet of radius 1: the Earth with its map, longitude 0 at x, others plain."""
-    world_map = shipped_folder("assets") / "earth_2048.jpg"
+    world_map = shipped_folder("assets") / "earth_4096.jpg"
     if name != "Earth" or not world_map.is_file():
         color = style.OCEAN if name == "Earth" else style.dim(style.PLANETS.get(name, style.ROCK), 0.8)
-        picture.log_mesh(f"{path}/ball", ball(48, 96), color, shaded=False)
+        picture.log_mesh(f"{path}/ball", ball(96, 192), color, shaded=False)
         return
     picture.log_static(
-        f"{path}/ball", rr.Asset3D(contents=globe(world_map.read_bytes()), media_type="model/gltf-binary")
+        f"{path}/ball", rr.Asset3D(contents=globe(world_map.read_bytes(), 96, 192), media_type="model/gltf-binary")
     )
 
 
@@ -75,8 +75,8 @@ def log_night(picture: Picture) -> None:
     """Zones over the night side, darker and darker, and the umbra, +z away from the Sun, and an arrow of sunlight."""
     edges = [*NIGHT_EDGES, 0.0]
     for k, (outer, inner) in enumerate(pairwise(edges)):
-        zone = cap(outer, 16 if inner == 0 else 1, 64, inner, radius=NIGHT_RADIUS)
-        alpha = round(255 * (1 - (1 - NIGHT_ALPHA) ** (k + 1)))
+        zone = cap(outer, 24 if inner == 0 else 1, 96, inner, radius=NIGHT_RADIUS)
+        alpha = round(255 * min(1 - (1 - NIGHT_ALPHA) ** (k + 1), DARKEST))
         picture.log_mesh(f"/world/night/zone{k}", zone, [*style.NIGHT, alpha], shaded=False)
     picture.log_mesh("/world/night/umbra", tube(0.0, 2.6, 1.0, 1.0, 96), style.UMBRA, shaded=False)
     picture.log_static(

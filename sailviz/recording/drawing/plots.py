@@ -1,4 +1,5 @@
-"""Which curves a run has, for people and in people's units, and the ranges in which they are shown."""
+"""Which curves a run has, for people and in people's units: each with the size at which a change of it is worth
+showing."""
 
 from __future__ import annotations
 
@@ -9,27 +10,43 @@ import numpy as np
 
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.craft import CraftDrawing
+from sailviz.recording.drawing.log import Color
 from sailviz.recording.drawing.samples import Frame
 from sailviz.run.arrays import Run
+
+Values = Callable[[Run], np.ndarray]
 
 
 @dataclass(frozen=True)
 class Plot:
-    """One view of curves. `values` gives (n, k) of a run, one column a name."""
+    """One view of curves. `values` gives (n, k) of a run, one column a name.
 
-    path: str
+    natural : the change, in the plot's unit, that is worth as much as another's; a negative one is that share of the
+    largest value. bonus : what the quantity counts beside others.
+    """
+
+    key: str  # a word, by which a scene may ask for it
     title: str
     names: tuple[str, ...]
-    colors: tuple[list[int], ...]
-    values: Callable[[Run], np.ndarray]
+    colors: tuple[Color, ...]
+    values: Values
+    natural: float
+    bonus: float = 1.0
     from_zero: bool = False
+    steady: str = ""  # how a constant one is told, with {} for the number; "" where it is not worth telling
+    handy: bool = False  # in m/s2; its unit is chosen when the largest value of the run is known
     noise: float = 0.0  # a change below it is rounding, and is not shown as a change
+
+    @property
+    def path(self) -> str:
+        """Where its curves are written."""
+        return f"/plots/{self.key}"
 
 
 UNITS = {  # ending of a name -> factor and unit on the plot; the longest that fits counts
     "_rad": (180 / np.pi, "deg"),
     "_deg": (1.0, "deg"),
-    "_N_m": (1e9, "nN/m"),
+    "_N_m": (1e9, "nN"),
     "_N": (1e3, "mN"),
     "_Pa": (1e9, "nPa"),
     "_V": (1.0, "V"),
@@ -49,9 +66,41 @@ UNITS = {  # ending of a name -> factor and unit on the plot; the longest that f
     "_sfu": (1.0, "sfu"),
 }
 LOGARITHMIC = {"_m3": "1/m³", "_1_m3": "1/m³", "_m_3": "1/m³", "_kg_m3": "kg/m³", "_per_m3": "1/m³"}
-LOGARITHMIC_COLUMNS = {"air_drag_N": "N"}  # over many powers of ten although of another unit
-DRAWN_OTHERWISE = ("earth_rotation_rad", "mean_altitude_m", "quasi_circular_altitude_m", "primer_direction")
-COLORS = {"plasma_density_per_m3": style.SERIES[4], "plasma_force_N_m": style.THRUST, "air_drag_N": style.SERIES[1]}
+DECADE = 1.0  # natural size of a logarithm
+DRAWN_OTHERWISE = (
+    "earth_rotation_rad",
+    "mean_altitude_m",
+    "quasi_circular_altitude_m",
+    "primer_direction",
+    "thrust_factor",
+)
+WORDS = {  # columns of the environment whose title is not their name
+    "plasma_force_N_m": "Drag on each metre of tether",
+    "solar_flux_sfu": "Solar activity, F10.7",
+    "plasma_density_per_m3": "Plasma density",
+    "air_density_kg_m3": "Air density",
+    "solar_wind_pressure_Pa": "Pressure of the solar wind",
+    "irradiance_W_m2": "Sunshine at 1 au",
+    "electrochromic_state": "Mirror share of the film's edge",
+    "altitude_over_ellipsoid_m": "Height over the ellipsoid",
+    "switching_function": "Switching function: pushes where positive",
+}
+COLOR_OF = (  # part of a column's name -> the quantity whose colour it has
+    ("plasma_force", "drag"),
+    ("air", "air"),
+    ("plasma", "plasma"),
+    ("ion", "plasma"),
+    ("wind", "wind"),
+    ("voltage", "voltage"),
+    ("current", "current"),
+    ("power", "power"),
+    ("flux", "sunlight"),
+    ("irradiance", "sunlight"),
+    ("tilt", "sail angle"),
+    ("altitude", "altitude"),
+    ("switching", "switch"),
+)
+RARE = ("switching_function",)  # only where the scene is about it
 
 
 def degrees(*columns: np.ndarray) -> np.ndarray:
@@ -64,12 +113,12 @@ def bound(semi_major_axis: np.ndarray) -> np.ndarray:
     return np.where(semi_major_axis > 0, semi_major_axis, np.nan)
 
 
-def pitch_and_cone(run: Run) -> np.ndarray:
-    """Without thrust there is no cone angle."""
+def angles_of_sail(run: Run) -> np.ndarray:
+    """The sail's and the thrust's angle from the radial line; without thrust there is none."""
     return degrees(run.attitude.pitch, np.where(run.thrust.magnitude > 0, run.attitude.cone, np.nan))
 
 
-def clock_about(start: float) -> Callable[[Run], np.ndarray]:
+def clock_about(start: float) -> Values:
     """The clock angle in the turn about 0 or in that about 180 deg, whichever its first value is nearer to: an angle
     that sways about 0 must not jump by 360."""
     low = 0.0 if np.cos(start) < 0 else -np.pi
@@ -77,87 +126,125 @@ def clock_about(start: float) -> Callable[[Run], np.ndarray]:
 
 
 def plots_of(first: Run, frame: Frame, craft: CraftDrawing) -> list[Plot]:
-    """All curves that are written of a run; the layout shows those that say something."""
-    unit, name = thrust_units(first)
-    environment = [
-        name
-        for name, values in first.environment.items()
-        if values.dtype != bool and values.ndim == 1 and name not in DRAWN_OTHERWISE
-    ]
-    return [
-        distance_plot(first, frame, craft),
+    """All curves that are gathered of a run; those that say something are written."""
+    low = frame.low
+    found = [altitude_plot(first)] if low else open_space_plots(first, frame, craft)
+    if craft.pushes and not (low and "plasma_force_N_m" in first.environment):
+        found.append(push_plot(craft))
+    if not low:
+        found += orbit_plots()
+    if first.approximations:
+        found.append(approximation_plot(first))
+    for name, values in first.environment.items():
+        if values.dtype != bool and values.ndim == 1 and name not in DRAWN_OTHERWISE:
+            found.append(environment_plot(name))
+    return found
+
+
+def open_space_plots(first: Run, frame: Frame, craft: CraftDrawing) -> list[Plot]:
+    """Distances, speed and the sail's angles."""
+    q, unit = style.QUANTITY, frame.unit
+    from_body = "the Sun" if frame.sun else "the centre"
+    found = [
         Plot(
-            "/plots/inclination",
+            "distance",
+            f"Distance from {from_body} [{frame.unit_name}]",
+            ("distance", "semi-major axis"),
+            (q["distance"], q["semi-major axis"]),
+            lambda run: np.stack([np.linalg.norm(run.position, axis=1), bound(run.elements.semi_major_axis)], 1) / unit,
+            natural=-0.5,
+            bonus=1.3,
+            steady=f"distance {{:.3g}} {frame.unit_name}",
+        ),
+        Plot(
+            "speed",
+            "Speed [km/s]",
+            ("speed",),
+            (q["speed"],),
+            lambda run: 1e-3 * np.linalg.norm(run.velocity, axis=1)[:, None],
+            natural=-0.6,
+            bonus=0.8,
+        ),
+        Plot(
+            "height",
+            f"Height above the {'ecliptic' if frame.sun else 'plane x, y'} [{frame.unit_name}]",
+            ("height",),
+            (q["height"],),
+            lambda run: run.position[:, 2:] / unit,
+            natural=0.5 * frame.origin_radius,
+            noise=1e-9 * frame.origin_radius,
+        ),
+    ]
+    if craft.has_angles and craft.flow_word:
+        found.append(
+            Plot(
+                "angle",
+                f"{craft.sail_word[:1].upper()}{craft.sail_word[1:]} off the {craft.flow_word} [deg]",
+                ("sail", "push"),
+                (q["sail angle"], q["cone angle"]),
+                angles_of_sail,
+                natural=40.0,
+                bonus=1.1,
+                steady=f"{craft.sail_word} {{:.0f}}° off the {craft.flow_word}",
+                noise=1e-3,
+            )
+        )
+        found.append(
+            Plot(
+                "clock",
+                "Clock angle [deg]",
+                ("clock",),
+                (q["clock angle"],),
+                clock_about(first.attitude.clock[0]),
+                natural=90.0,
+                bonus=0.6,
+                noise=1e-3,
+            )
+        )
+    if frame.sun and "Earth" in first.bodies:
+        found.append(
+            Plot(
+                "earth",
+                "Distance from the Earth [au]",
+                ("distance from the Earth",),
+                (q["distance from the Earth"],),
+                lambda run: np.linalg.norm(run.position - run.bodies["Earth"], axis=1)[:, None] / unit,
+                natural=frame.origin_radius,
+                bonus=0.5,
+                from_zero=True,
+            )
+        )
+    return found
+
+
+def orbit_plots() -> list[Plot]:
+    """How the orbit lies and how round it is."""
+    q = style.QUANTITY
+    return [
+        Plot(
+            "inclination",
             "Inclination [deg]",
-            ("i",),
-            style.SERIES[2:3],
+            ("inclination",),
+            (q["inclination"],),
             lambda run: degrees(run.elements.inclination),
+            natural=40.0,
             noise=1e-3,
         ),
         Plot(
-            "/plots/eccentricity",
+            "eccentricity",
             "Eccentricity",
-            ("e",),
-            style.SERIES[3:4],
+            ("eccentricity",),
+            (q["eccentricity"],),
             lambda run: run.elements.eccentricity[:, None],
-        ),
-        *(angle_plots(first) if craft.has_angles else []),
-        Plot(
-            "/plots/thrust",
-            f"{craft.force} acceleration [{name}]",
-            (craft.force.lower(),),
-            (style.THRUST,),
-            lambda run: unit * run.thrust.magnitude[:, None],
+            natural=0.5,
             from_zero=True,
         ),
-        *([approximation_plot(first)] if first.approximations else []),
-        *(environment_plot(name, COLORS.get(name, style.SERIES[(4 + k) % 5])) for k, name in enumerate(environment)),
     ]
 
 
-def angle_plots(first: Run) -> list[Plot]:
-    """Pitch, cone and clock angle."""
-    return [
-        Plot(
-            "/plots/angles",
-            "Pitch and cone angle [deg]",
-            ("pitch", "cone"),
-            (style.PITCH, style.CONE),
-            pitch_and_cone,
-            noise=1e-3,
-        ),
-        Plot(
-            "/plots/clock",
-            "Clock angle [deg]",
-            ("clock",),
-            (style.CLOCK,),
-            clock_about(first.attitude.clock[0]),
-            noise=1e-3,
-        ),
-    ]
-
-
-def distance_plot(first: Run, frame: Frame, craft: CraftDrawing) -> Plot:
-    """Distance and semi-major axis: over a planet from its surface, in km, elsewhere from the centre, in view units."""
-    comes_down = craft.descends or "air_drag_N" in first.environment
-    if comes_down and first.setting.body.radius:
-        return descent_plot(first)
-    radius = 0.0 if frame.sun else first.setting.body.radius
-    unit = 1e3 if radius else frame.unit
-
-    def values(run: Run) -> np.ndarray:
-        r, a = np.linalg.norm(run.position, axis=1), bound(run.elements.semi_major_axis)
-        return (np.stack([r, a], 1) - radius) / unit
-
-    if radius:
-        return Plot("/plots/altitude", "Altitude [km]", ("h", "a - R"), style.SERIES[:2], values)
-    title = f"Distance r and semi-major axis a [{frame.unit_name}]"
-    return Plot("/plots/distance", title, ("r", "a"), style.SERIES[:2], values)
-
-
-def descent_plot(first: Run) -> Plot:
-    """Altitudes over the equator's radius: of perigee and apogee, the mean one without the swing of an oblate planet
-    where the run knows it, else of the semi-major axis, and of the analytic decay.
+def altitude_plot(first: Run) -> Plot:
+    """Altitudes over the equator's radius: the mean one without the swing of an oblate planet where the run knows it,
+    else of the semi-major axis; of the lowest and the highest point of the orbit; and of the analytic decay.
     """
     radius = first.setting.body.radius
     analytic = "quasi_circular_altitude_m" in first.environment
@@ -165,24 +252,33 @@ def descent_plot(first: Run) -> Plot:
     def values(run: Run) -> np.ndarray:
         a, e = bound(run.elements.semi_major_axis), run.elements.eccentricity
         mean = run.environment.get("mean_altitude_m", a - radius)
-        columns = [a * (1 - e) - radius, a * (1 + e) - radius, mean]
+        columns = [mean, a * (1 - e) - radius, a * (1 + e) - radius]
         if analytic:
             columns.append(run.environment["quasi_circular_altitude_m"])
         return np.stack(columns, 1) / 1e3
 
-    names: tuple[str, ...] = ("perigee", "apogee", "mean")
-    colors: tuple[list[int], ...] = (style.SERIES[2], style.SERIES[3], style.SERIES[0])
+    names: tuple[str, ...] = ("altitude", "lowest", "highest")
     if analytic:
-        names, colors = (*names, "analytic decay"), (*colors, style.SERIES[1])
-    return Plot("/plots/altitude", "Altitude [km]", names, colors, values)
+        names = (*names, "closed form")
+    colors = tuple(style.QUANTITY["analytic" if name == "closed form" else name] for name in names)
+    return Plot("altitude", "Altitude [km]", names, colors, values, natural=-0.3, bonus=1.5, steady="{:.0f} km up")
 
 
-def thrust_units(first: Run) -> tuple[float, str]:
-    """The unit in which the first row's thrust is a handy number: the factor from m/s2, and its name."""
-    size = float(first.thrust.magnitude[0])
-    if size == 0 or size >= 0.0995e-3:
-        return 1e3, "mm/s²"
-    return (1e6, "µm/s²") if size >= 0.0995e-6 else (1e9, "nm/s²")
+def push_plot(craft: CraftDrawing) -> Plot:
+    """The size of what pushes or brakes."""
+    word = craft.force
+    return Plot(
+        "push",
+        f"{word[:1].upper()}{word[1:]}",
+        (word,),
+        (style.QUANTITY[word],),
+        lambda run: run.thrust.magnitude[:, None],
+        natural=-0.6,
+        bonus=1.2,
+        from_zero=True,
+        steady=word,
+        handy=True,
+    )
 
 
 def approximation_plot(first: Run) -> Plot:
@@ -193,46 +289,41 @@ def approximation_plot(first: Run) -> Plot:
         off = [np.linalg.norm(run.approximations[name] - run.position, axis=1) for name in names]
         return np.asarray(100 * np.stack(off, 1) / np.linalg.norm(run.position, axis=1)[:, None])
 
-    colors = tuple(style.SERIES[(1 + k) % 5] for k in range(len(names)))
-    return Plot("/plots/approximation", "Approximation off by [% of r]", names, colors, values, from_zero=True)
-
-
-def environment_plot(name: str, color: list[int]) -> Plot:
-    """A column of the environment: title from its name, unit from the name's ending, densities as logarithms."""
-    ending = max((u for u in (*UNITS, *LOGARITHMIC) if name.endswith(u)), key=len, default="")
-    words = name.removesuffix(ending).replace("_", " ")
-    words = words[:1].upper() + words[1:]
-    if ending in LOGARITHMIC or name in LOGARITHMIC_COLUMNS:
-
-        def values(run: Run) -> np.ndarray:
-            with np.errstate(divide="ignore", invalid="ignore"):
-                return np.asarray(np.log10(run.environment[name])[:, None])
-
-        unit = LOGARITHMIC_COLUMNS[name] if name in LOGARITHMIC_COLUMNS else LOGARITHMIC[ending]
-        title = f"{words} [log10 {unit}]"
-        return Plot(f"/plots/{name}", title, (words.lower(),), (color,), values)
-    factor, unit = (1e-3, "kV") if name == "thrust_voltage_V" else UNITS.get(ending, (1.0, ""))
-    title = f"{words} [{unit}]" if unit else words
+    colors = tuple(style.family(style.APPROXIMATION, len(names)))
     return Plot(
-        f"/plots/{name}", title, (words.lower(),), (color,), lambda run: factor * run.environment[name][:, None]
+        "approximation",
+        "Approximation off by [% of the distance]",
+        names,
+        colors,
+        values,
+        natural=1.0,
+        bonus=1.6,
+        from_zero=True,
     )
 
 
-def nice_range(low: float, high: float, numbers: float = 4.0) -> tuple[float, float]:
-    """A range between round numbers and a margin, such that the viewer finds room for two numbers on the axis.
+def environment_plot(name: str) -> Plot:
+    """A column of the environment: title from its name, unit from the name's ending, densities as logarithms."""
+    ending = max((u for u in (*UNITS, *LOGARITHMIC) if name.endswith(u)), key=len, default="")
+    words = name.removesuffix(ending).replace("_", " ")
+    title = WORDS.get(name, words[:1].upper() + words[1:])
+    color = style.QUANTITY[next((quantity for part, quantity in COLOR_OF if part in name), "switch")]
+    if ending in LOGARITHMIC or name == "air_drag_N":
+        unit = LOGARITHMIC.get(ending, "N")
 
-    It writes multiples of a power of ten where there is room for them: `numbers` is how many fit. A constant stands in
-    the middle of a fifth of its size.
-    """
-    if high - low <= 1e-3 * max(abs(low), abs(high)):
-        half = 0.1 * max(abs(low), abs(high)) or 0.5
-        low, high = low - half, high + half
-    span = high - low
-    fine = 10.0 ** np.floor(np.log10(span))
-    coarse = fine if span <= numbers * fine else 10 * fine
-    for step in (coarse, fine):
-        bottom, top = np.floor(low / step + 1e-9) * step, np.ceil(high / step - 1e-9) * step
-        if span >= 0.45 * (top - bottom):
-            break  # not too much empty room
-    margin = 0.05 * (top - bottom)
-    return float(bottom - margin), float(top + margin)
+        def values(run: Run) -> np.ndarray:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                found = np.log10(run.environment[name])[:, None]
+            return np.asarray(np.where(np.isfinite(found), found, np.nan))
+
+        return Plot(name, f"{title} [log10 of {unit}]", (words.lower(),), (color,), values, natural=DECADE)
+    factor, unit = (1e-3, "kV") if name == "thrust_voltage_V" else UNITS.get(ending, (1.0, ""))
+    return Plot(
+        name,
+        f"{title} [{unit}]" if unit else title,
+        (words.lower(),),
+        (color,),
+        lambda run: factor * run.environment[name][:, None],
+        natural=-0.6,
+        bonus=1.2 if name == "plasma_force_N_m" else 0.9,
+    )

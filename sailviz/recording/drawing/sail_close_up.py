@@ -1,12 +1,10 @@
-"""The close-up: the craft in the orbital frame, with what acts on it and its angles. Units: a sail is 14 to 16 across.
+"""The close-up: the craft in the orbital frame, what falls on it, what it throws back, what pushes it, where it flies.
 
-/sail has x from the central body, y transverse, z along the orbit normal. Arrows of thrust are as long as the root of
-the thrust, so that weak ones are still seen.
+/sail has x from the central body, y transverse, z along the orbit's normal; the craft is about ten across. The push is
+7.5 long plus the root of its share of the largest, so that a weak one is still seen.
 """
 
 from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 import numpy as np
 import rerun as rr
@@ -14,157 +12,205 @@ import rerun as rr
 from sailviz.frames import body_axes, quaternion, unit
 from sailviz.recording.drawing import cameras, style
 from sailviz.recording.drawing.cameras import Camera
-from sailviz.recording.drawing.craft import CraftDrawing, Glow
-from sailviz.recording.drawing.log import Picture, f4
-from sailviz.recording.drawing.samples import Samples
+from sailviz.recording.drawing.craft import Glow
+from sailviz.recording.drawing.layout import Space
+from sailviz.recording.drawing.log import Color, Picture, f4
+from sailviz.recording.drawing.phrases import push_words
 from sailviz.recording.drawing.sky import log_stars
-from sailviz.run.arrays import Run
+from sailviz.recording.drawing.story import Story
 
-if TYPE_CHECKING:
-    from sailviz.recording.drawing.layout import Layout
+RAY = 8.0  # length of what falls in
+MIRRORED = 6.0
+ON_FILM = ((-2.6, -2.0), (-2.6, 2.2), (0.4, 0.0), (2.6, -2.3), (2.6, 2.2))  # where rays end, y and z
+ON_WHEEL = ((-5.0, -4.0), (-5.0, 4.0), (0.0, 0.0), (5.0, -4.0), (5.0, 4.0), (0.0, 6.5), (0.0, -6.5))
+EDGE_ON = 0.15  # cosine below which a ray's end is not carried on
+FARTHEST = 7.0  # from the plane y, z that a ray may end
+BEFORE = 0.25  # above the film, so that an arrow's head is seen
+SHORT, LONGER = 7.5, 4.5  # length of the push
+VELOCITY, PRIMER, NORMAL = 9.0, 9.0, 8.0
+ANGLE, ANGLE_NAME = 6.2, 7.4  # radii of the fan and of its number
+CLOCK = 7.0  # distance at which the clock angle's circle stands
+ARC = 13  # points of an arc
+ASPECT = {0: 590 / 380, 1: 590 / 380, 2: 590 / 315, 3: 590 / 260}  # of the view, by what stands below it; 3 is bars
+FILL = 0.78
 
-VELOCITY_LENGTH = 11.0
-PRIMER_LENGTH = 9.0
-CLOCK_AXIS = 10.0  # how far along the thrust the clock angle is shown where there is no arrow of the normal
-PITCH_RADIUS = 6.0
-CONE_RADIUS = 4.4
-ARC = 25  # points of an arc
+
+def log_close_up(picture: Picture, story: Story, below: int) -> Space:
+    """Write /sail -> its view. below : how many plots stand under it, 3 for a plot and bars."""
+    picture.log_static("/sail", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+    log_stars(picture, "/sail/stars", 900.0, 500)
+    log_body(picture, story)
+    eye = eye_of(story)
+    length = push_length(story)
+    log_arrow(picture, story, "push", style.PUSH, length, style.WIDTH["close push"])
+    log_name(picture, story, "push", style.PUSH, beyond(length, eye, 2.6), push_words(story.push))
+    velocity = VELOCITY * story.samples.velocity_rtn
+    log_arrow(picture, story, "velocity", style.SPEED, velocity, style.WIDTH["close arrow"])
+    words = ["flies this way"] * len(story.time)
+    log_name(picture, story, "velocity", style.SPEED, beyond(velocity, eye, 1.0), words)
+    if story.craft.flow_word and story.frame.sun:
+        log_flow(picture, story, eye)
+    if story.craft.has_angles and (story.craft.facing or story.craft.slanted):
+        log_angle(picture, story)
+        if story.about("clock"):
+            log_clock(picture, story)
+    primer = story.samples.primer_rtn
+    if primer is not None and story.about("primer"):
+        log_arrow(picture, story, "primer", style.PRIMER, PRIMER * primer, style.WIDTH["close arrow"])
+        log_name(picture, story, "primer", style.PRIMER, beyond(PRIMER * primer, eye, 1.0), ["primer"] * len(primer))
+    at, target = cameras.fit(places_in_sight(story, length, velocity), eye, ASPECT[below], FILL)
+    name = f"{story.craft.close_name or story.setting.craft.label or 'Craft'} close up"
+    name += ": what pushes it" if story.most > 0 else ""
+    return Space(Camera(name, "/sail", tuple(at.tolist()), tuple(target.tolist())), ("+ /sail/**",))
 
 
-class SailCloseUp:
-    """Writes /sail for everything that has an attitude: film, wheel or thruster."""
+def log_body(picture: Picture, story: Story) -> None:
+    """The craft in its attitude."""
+    samples, craft = story.samples, story.craft
+    axes = body_axes(samples.normal_rtn, np.tile([0.0, 1.0, 0.0], (len(samples), 1)))
+    picture.log_pose("/sail/body", story.index, quaternion=quaternion(axes))
+    craft.log_shape(picture, "/sail/body/shape", True)
+    picture.log_scale("/sail/body/shape", craft.close_size)
+    Glow(picture, "/sail/body", craft).add(samples.index_of, samples.run.thrust.on)
 
-    def __init__(self, picture: Picture, first: Run, craft: CraftDrawing):
-        self._picture, self._craft = picture, craft
-        self._label = craft.close_name or first.setting.craft.label or "Craft"
-        self._normal = craft.normal_length is not None
-        self._length = craft.normal_length or CLOCK_AXIS
-        picture.log_static("/sail", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
-        log_stars(picture, "/sail/stars", 900.0, 700)
-        craft.log_shape(picture, "/sail/body/shape", True)
-        self._glow = Glow(picture, "/sail/body", craft)
-        picture.log_scale("/sail/body/shape", craft.close_size)
-        if first.setting.body.name == "Sun":
-            self._log_flow()
-        picture.log_lines("/sail/radial", [[[0, 0, 0], [12, 0, 0]]], style.RADIAL, style.WIDTH["helper"])
-        if self._normal:
-            picture.log_arrow_style("/sail/normal", style.NORMAL, style.WIDTH["close arrow"])
-            picture.log_label_style("/sail/normal/name", style.NORMAL, "normal")
-        picture.log_arrow_style("/sail/velocity", style.VELOCITY, style.WIDTH["close arrow"])
-        picture.log_arrow_style("/sail/primer", style.PRIMER, style.WIDTH["close arrow"])
-        picture.log_label_style("/sail/primer/name", style.PRIMER, "primer")
-        picture.log_arrow_style("/sail/force/arrow", style.THRUST, style.WIDTH["close thrust"])
-        picture.log_label_style("/sail/velocity/name", style.VELOCITY, "velocity")
-        picture.log_label_style("/sail/force_name", style.THRUST)
-        picture.log_strip_style("/sail/pitch/arc", style.PITCH, style.WIDTH["arc"])
-        k = np.arange(1, ARC)
-        fan = np.stack([0 * k, k, k + 1], 1).astype(np.uint32)
-        picture.log_triangles("/sail/pitch/fan", fan, [*style.PITCH, 38])
-        picture.log_label_style("/sail/pitch/name", style.PITCH)
-        picture.log_strip_style("/sail/cone", style.CONE, style.WIDTH["arc"])
-        picture.log_strip_style("/sail/clock/circle", style.CLOCK_CIRCLE, style.WIDTH["helper"])
-        picture.log_strip_style("/sail/clock/spokes", style.CLOCK_CIRCLE, style.WIDTH["helper"])
-        picture.log_strip_style("/sail/clock/arc", style.CLOCK, 1.8)
-        picture.log_label_style("/sail/clock/name", style.CLOCK)
 
-    def _log_flow(self) -> None:
-        """What comes from the Sun: light, or the wind on an E-sail."""
-        name, color = self._craft.flow
-        origins = [[-12, y, z] for y in (-5, 0, 5) for z in (-5, 0, 5)]
-        dimmed, width = style.dim(color, 0.6), style.WIDTH["flow"]
-        self._picture.log_fixed_arrows("/sail/flow", origins, [3.6, 0, 0], dimmed, width)
-        self._picture.log_label("/sail/flow/name", name, color, (-9.0, 0, 6.0))
+def push_length(story: Story) -> np.ndarray:
+    """(n, 3) the arrow of the push; nothing where nothing pushes."""
+    share = story.push / story.most if story.most > 0 else story.push
+    length = np.where(share > 0, SHORT + LONGER * np.sqrt(share), 0.0)
+    return np.asarray(length[:, None] * unit(story.samples.thrust_rtn))
 
-    def camera(self, middle: Samples) -> Camera:
-        """Arrows apart, the sunlit side of a film in sight."""
-        normal, thrust, velocity = middle.normal_rtn[0], middle.thrust_rtn[0], middle.velocity_rtn[0]
-        arrows = [np.array([1.0, 0.0, 0.0]), velocity]
-        for arrow in (normal, unit(thrust)):
-            if all(np.linalg.norm(arrow - other) > 0.05 for other in arrows) and np.linalg.norm(arrow) > 0.5:
-                arrows.append(arrow)
-        fan = np.cross([1.0, 0.0, 0.0], normal)
-        eye = cameras.apart(
-            arrows,
-            facing=normal if self._craft.facing else None,
-            slanted=normal if self._craft.slanted else None,
-            open_to=unit(fan) if np.linalg.norm(fan) > 0.05 else None,
-            elevations=(20, 28, 36) if self._craft.facing else (20, 28, 36, 44, 52),
-        )
-        name = f"{self._label} close-up (orbital frame)"
-        return Camera(name, "/sail", tuple((26.0 * eye).tolist()), (1.0, 0.0, 0.0))
 
-    def add(self, samples: Samples) -> None:
-        """A group of drawn rows."""
-        picture, index, count = self._picture, samples.index, len(samples)
-        normal, velocity = samples.normal_rtn, samples.velocity_rtn
-        axes = body_axes(normal, np.tile([0.0, 1.0, 0.0], (count, 1)))
-        picture.log_pose("/sail/body", index, quaternion=quaternion(axes))
-        self._glow.add(samples.index_of, samples.run.thrust.on)
-        if self._normal:
-            picture.log_arrows("/sail/normal", index, self._length * normal)
-            picture.log_labels("/sail/normal/name", index, 1.06 * self._length * normal)
-        picture.log_arrows("/sail/velocity", index, VELOCITY_LENGTH * velocity)
-        still = ~np.any(velocity, axis=1, keepdims=True)
-        picture.log_labels("/sail/velocity/name", index, np.where(still, np.nan, 1.06 * VELOCITY_LENGTH * velocity))
-        if samples.primer_rtn is not None:
-            picture.log_arrows("/sail/primer", index, PRIMER_LENGTH * samples.primer_rtn)
-            picture.log_labels("/sail/primer/name", index, 1.08 * PRIMER_LENGTH * samples.primer_rtn)
-        self._add_force(samples)
-        self._add_angles(samples)
+def log_arrow(picture: Picture, story: Story, name: str, color: Color, vectors: np.ndarray, width: float) -> None:
+    """An arrow from the middle, unless it is never there."""
+    if np.any(vectors):
+        picture.log_arrow_style(f"/sail/{name}", color, width)
+        picture.log_arrows(f"/sail/{name}", story.index, vectors)
 
-    def _add_force(self, samples: Samples) -> None:
-        thrust, size = samples.thrust_rtn, samples.run.thrust.magnitude
-        root = np.sqrt(size)[:, None] * unit(thrust)
-        self._picture.log_arrows("/sail/force/arrow", samples.index, root)
-        texts = [f"thrust {acceleration_text(a)}" if a > 0 else "no thrust" for a in size.tolist()]
-        self._picture.log_columns("/sail/force_name", samples.index, rr.Points3D.columns(labels=texts))
 
-    def _add_angles(self, samples: Samples) -> None:
-        """Pitch as a fan from the radial line to the normal, cone as an arc to the thrust, clock on a circle."""
-        picture, index, count = self._picture, samples.index, len(samples)
-        attitude = samples.run.attitude
-        out = np.tile([1.0, 0.0, 0.0], (count, 1))
-        fan = PITCH_RADIUS * arcs(out, samples.normal_rtn)
-        picture.log_strips("/sail/pitch/arc", index, fan)
-        corners = np.concatenate([np.zeros((count, 1, 3)), fan], 1)
-        columns = rr.Mesh3D.columns(vertex_positions=f4(corners.reshape(-1, 3))).partition([ARC + 1] * count)
-        picture.log_columns("/sail/pitch/fan", index, columns)
-        # on the other side of the radial line: between it and the normal there is the thrust
-        across = unit(samples.normal_rtn * [0.0, 1.0, 1.0])
-        place = PITCH_RADIUS * (np.cos(np.radians(14)) * out - np.sin(np.radians(14)) * across)
-        picture.log_labels("/sail/pitch/name", index, place, angle_texts("pitch", attitude.pitch))
-        thrust = np.where(np.any(samples.thrust_rtn, 1, keepdims=True), unit(samples.thrust_rtn), out)
-        picture.log_strips("/sail/cone", index, CONE_RADIUS * arcs(out, thrust))
-        self._add_clock(samples, attitude.pitch, attitude.clock)
+def log_name(picture: Picture, story: Story, name: str, color: Color, place: np.ndarray, words: list[str]) -> None:
+    """A name beyond an arrow's tip."""
+    if np.any(np.isfinite(place)):
+        picture.log_label_style(f"/sail/{name}_name", color)
+        picture.log_labels(f"/sail/{name}_name", story.index, place, words)
 
-    def _add_clock(self, samples: Samples, pitch: np.ndarray, clock: np.ndarray) -> None:
-        picture, index, length = self._picture, samples.index, self._length
-        axial, radius = length * np.cos(pitch), length * np.sin(pitch)
 
-        def on_circle(angle: np.ndarray) -> np.ndarray:
-            """Angles (n, k) from the orbit normal towards the transverse direction -> (n, k, 3)."""
-            x = np.broadcast_to(axial[:, None], angle.shape)
-            return np.stack([x, radius[:, None] * np.sin(angle), radius[:, None] * np.cos(angle)], -1)
+def beyond(arrows: np.ndarray, eye: np.ndarray, gap: float) -> np.ndarray:
+    """Places (n, 3) past the tips of arrows by `gap`, outwards as the eye (3,) sees it; NaN where there is no arrow."""
+    flat = arrows - (arrows @ eye)[:, None] * eye
+    there = np.any(arrows, axis=1, keepdims=True)
+    return np.where(there, arrows + gap * unit(flat), np.nan)
 
-        full = np.tile(np.linspace(0, 2 * np.pi, 49), (len(samples), 1))
-        picture.log_strips("/sail/clock/circle", index, on_circle(full))
-        center = np.stack([axial, 0 * axial, 0 * axial], -1)[:, None]
-        ends = [on_circle(np.zeros((len(samples), 1))), center, on_circle(clock[:, None])]
-        picture.log_strips("/sail/clock/spokes", index, np.concatenate(ends, 1))
-        picture.log_strips("/sail/clock/arc", index, on_circle(clock[:, None] * np.linspace(0, 1, 37)))
-        # where the angle starts, but on the far side of the circle where the normal's own label is near
-        near = np.clip(1 - np.minimum(clock, 2 * np.pi - clock) / np.radians(60), 0, 1)
-        place = on_circle((np.pi * near)[:, None])[:, 0] * [1.0, 1.15, 1.15]
-        place[:, 2] -= np.clip(4.0 - radius, 0, None)  # a small circle would lie under its own label
-        picture.log_labels("/sail/clock/name", index, place, angle_texts("clock", clock))
 
-    def size(self, layout: Layout) -> None:
-        """The length of the thrust, and its label under the craft."""
-        self._picture.log_scale("/sail/force", layout.close_thrust_scale)
-        # under the craft as the camera sees it, not at the arrow's tip, which often lies among those of other arrows
-        eye = unit(np.array(layout.close_up.position))
-        down = unit(eye[2] * eye - [0.0, 0.0, 1.0])
-        self._picture.log_static("/sail/force_name", rr.Points3D.from_fields(positions=[f4(9.3 * down)]))
+def log_flow(picture: Picture, story: Story, eye: np.ndarray) -> None:
+    """Light that ends on the film and leaves it mirrored, or the wind through a wheel. No mirror is perfect: what is
+    drawn is the direction, not how much."""
+    film, normal = story.craft.facing, story.samples.normal_rtn
+    hits = np.array(ON_FILM if film else ON_WHEEL)
+    steep = np.where(np.abs(normal[:, :1]) < EDGE_ON, EDGE_ON, normal[:, :1])
+    depth = -(normal[:, 1:2] * hits[:, 0] + normal[:, 2:] * hits[:, 1]) / steep
+    ends = np.empty((len(normal), len(hits), 3))
+    ends[..., 0] = np.clip(depth, -FARTHEST, FARTHEST) - BEFORE
+    ends[..., 1:] = hits
+    word, color = story.craft.flow_word, story.craft.flow_color
+    starts = ends - [RAY, 0.0, 0.0]
+    counts = [len(hits)] * len(normal)
+
+    def rays(path: str, origins: np.ndarray, vectors: np.ndarray, shade: Color, width: float) -> None:
+        picture.log_arrow_style(path, shade, width)
+        columns = rr.Arrows3D.columns(origins=f4(origins.reshape(-1, 3)), vectors=f4(vectors))
+        picture.log_columns(path, story.index, columns.partition(counts))
+
+    falling = np.tile([RAY, 0.0, 0.0], (len(normal) * len(hits), 1))
+    rays("/sail/flow", starts, falling, style.dim(color, 0.8), style.WIDTH["flow"])
+    if film:
+        light = np.array([1.0, 0.0, 0.0])
+        back = light - 2 * normal[:, :1] * normal
+        rays("/sail/mirrored", ends, np.repeat(MIRRORED * back, len(hits), axis=0), style.MIRRORED, 1.0)
+    middle = starts.mean(0)
+    top = unit(np.cross(eye, unit(np.cross([0.0, 0.0, 1.0], eye))))
+    picture.log_label("/sail/flow_name", flow_words(word), color, middle[np.argmax(middle @ top)] + 1.4 * top)
+
+
+def flow_words(word: str) -> str:
+    """What falls in, by its name."""
+    return {"wind": "solar wind"}.get(word, word)
+
+
+def log_angle(picture: Picture, story: Story) -> None:
+    """The sail's angle as a fan on the sunward side, between the ray and the normal, with its number."""
+    normal, index, count = story.samples.normal_rtn, story.index, len(story.time)
+    picture.log_lines("/sail/radial", [[[-10, 0, 0], [11, 0, 0]]], style.RADIAL, style.WIDTH["helper"])
+    picture.log_arrow_style("/sail/normal", style.NORMAL, 0.9)
+    picture.log_arrows("/sail/normal", index, -NORMAL * normal)
+    out = np.tile([1.0, 0.0, 0.0], (count, 1))
+    directions = arcs(out, normal)
+    fan = -ANGLE * directions
+    picture.log_strip_style("/sail/angle/arc", style.SUN, style.WIDTH["arc"])
+    picture.log_strips("/sail/angle/arc", index, fan)
+    k = np.arange(1, ARC)
+    picture.log_triangles("/sail/angle/fan", np.stack([0 * k, k, k + 1], 1).astype(np.uint32), [*style.SUN, 34])
+    corners = np.concatenate([np.zeros((count, 1, 3)), fan], 1)
+    columns = rr.Mesh3D.columns(vertex_positions=f4(corners.reshape(-1, 3))).partition([ARC + 1] * count)
+    picture.log_columns("/sail/angle/fan", index, columns)
+    picture.log_label_style("/sail/angle/name", style.SUN)
+    texts = [f"{angle:.0f}°" for angle in np.degrees(story.samples.run.attitude.pitch).tolist()]
+    picture.log_labels("/sail/angle/name", index, -ANGLE_NAME * directions[:, ARC // 2], texts)
+
+
+def log_clock(picture: Picture, story: Story) -> None:
+    """The clock angle: on a circle about the radial line, from the orbit's normal to the sail's."""
+    attitude, index = story.samples.run.attitude, story.index
+    axial, radius = CLOCK * np.cos(attitude.pitch), CLOCK * np.sin(attitude.pitch)
+
+    def on_circle(angle: np.ndarray) -> np.ndarray:
+        """Angles (n, k) from the orbit normal towards the transverse direction -> (n, k, 3)."""
+        x = np.broadcast_to(axial[:, None], angle.shape)
+        return np.stack([x, radius[:, None] * np.sin(angle), radius[:, None] * np.cos(angle)], -1)
+
+    full = np.tile(np.linspace(0, 2 * np.pi, 49), (len(story.time), 1))
+    clock = attitude.clock
+    center = np.stack([axial, 0 * axial, 0 * axial], -1)[:, None]
+    ends = [on_circle(0 * clock[:, None]), center, on_circle(clock[:, None])]
+    for name, lines, color, width in (
+        ("circle", on_circle(full), style.CLOCK_CIRCLE, style.WIDTH["helper"]),
+        ("spokes", np.concatenate(ends, 1), style.CLOCK_CIRCLE, style.WIDTH["helper"]),
+        ("arc", on_circle(clock[:, None] * np.linspace(0, 1, 37)), style.QUANTITY["clock angle"], 1.8),
+    ):
+        picture.log_strip_style(f"/sail/clock/{name}", color, width)
+        picture.log_strips(f"/sail/clock/{name}", index, lines)
+    picture.log_label_style("/sail/clock/name", style.QUANTITY["clock angle"])
+    place = on_circle(0.5 * clock[:, None])[:, 0] * [1.0, 1.3, 1.3] + np.stack(
+        [0 * axial, 0 * axial, 0 * axial + 0.6], -1
+    )
+    texts = [f"clock {round(value) % 360}°" for value in np.degrees(clock).tolist()]
+    picture.log_labels("/sail/clock/name", index, place, texts)
+
+
+def eye_of(story: Story) -> np.ndarray:
+    """From where the lit side, the push and the velocity are seen best."""
+    some, samples = story.moments, story.samples
+    normal, thrust = samples.normal_rtn[some], unit(samples.thrust_rtn[some])
+    pushed = np.where(np.any(thrust, axis=1, keepdims=True), thrust, normal)
+    weights = np.gradient(story.share[some]) if len(some) > 1 else np.ones(1)
+    return cameras.fixed_eye(
+        normal,
+        pushed,
+        np.maximum(weights, 1e-12),
+        story.craft.facing,
+        (12.0, 20.0, 28.0, 36.0),
+        push=1.8,
+        others=samples.velocity_rtn[some],
+    )
+
+
+def places_in_sight(story: Story, push: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """What must be seen, (k, 3)."""
+    some, size = story.moments, 0.65 * story.craft.close_size
+    axes = body_axes(story.samples.normal_rtn[some], np.tile([0.0, 1.0, 0.0], (len(some), 1)))
+    corners = [side * size * axes[..., k] for side in (-1, 1) for k in (0, 1)]
+    rays = np.array([[-RAY, 2.0, 2.0], [-RAY, -2.0, -2.0]])
+    return np.concatenate([*corners, 1.15 * push[some], rays, 1.3 * velocity[some]])
 
 
 def arcs(start: np.ndarray, end: np.ndarray) -> np.ndarray:
@@ -174,16 +220,3 @@ def arcs(start: np.ndarray, end: np.ndarray) -> np.ndarray:
     share = np.linspace(0, 1, ARC) * angle[:, None]
     points: np.ndarray = np.cos(share)[..., None] * start[:, None] + np.sin(share)[..., None] * unit(across)[:, None]
     return points
-
-
-def angle_texts(name: str, angle: np.ndarray) -> list[str]:
-    """pitch 35°: whole degrees, never -0, never 360."""
-    return [f"{name} {round(value) % 360}°" for value in np.degrees(angle).tolist()]
-
-
-def acceleration_text(a: float) -> str:
-    """An acceleration in m/s2 with three digits and a handy unit."""
-    for size, name in ((1e-3, "mm/s²"), (1e-6, "µm/s²"), (1e-9, "nm/s²")):
-        if a >= 0.0995 * size:
-            return f"{a / size:.3g} {name}"
-    return f"{a:.1e} m/s²"

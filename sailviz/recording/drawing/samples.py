@@ -16,13 +16,14 @@ from sailviz.frames import quaternion, rtn, to_frame, unit
 from sailviz.recording import timelines
 from sailviz.run.arrays import Run, Setting
 
-PICTURE_ROWS = 3000  # as many as a replay of 40 s has frames, and then some
+PICTURE_ROWS = 1500  # a replay of 30 s has about as many frames
 SPARSE_ROWS = 1200  # where the craft goes round slowly
 SPARSE = 1 / 12  # revolutions between drawn rows above which lines from row to row would be a zigzag
 TURNS = 30.0  # revolutions that are shown of a run whose rows are sparse
 PLANE_TURNS = 6.0  # revolutions round a planet from which a run shows the plane of its orbit
 SMOOTH = 72  # points of a trail per revolution
 CLOSE = 1 / 6  # revolutions between drawn rows in a dense window
+LOW = 2.0  # radii of a planet from its centre within which an orbit is a low one
 STILL = 3e-3  # of the circular speed: a craft that is held in place drifts at less
 
 
@@ -38,6 +39,7 @@ class Frame:
     unit: float
     unit_name: str
     sun: bool  # the Sun is in the centre
+    low: bool  # a low orbit: its ground lies close below
     most: int  # rows that are drawn, about
     rows: int
     start: float  # s
@@ -66,6 +68,7 @@ class Frame:
             unit=length,
             unit_name=name,
             sun=setting.body.name == "Sun",
+            low=is_low(first),
             most=most,
             rows=setting.rows,
             start=float(first.time[0]),
@@ -84,6 +87,15 @@ class Frame:
     def slowed(self) -> float:
         """How many times slower than the run the craft goes round in the picture."""
         return max(self.turns / TURNS, 1.0)
+
+
+def is_low(first: Run) -> bool:
+    """Whether the orbit of the first row comes closer to a planet than LOW radii from its centre."""
+    body, e = first.setting.body, first.elements
+    if body.name == "Sun" or body.radius <= 0:
+        return False
+    nearest = min(float(e.semi_major_axis[0] * (1 - e.eccentricity[0])), float(np.linalg.norm(first.position[0])))
+    return nearest < LOW * body.radius
 
 
 def unit_of(setting: Setting, distance: float) -> tuple[float, str]:
@@ -158,6 +170,10 @@ class Samples:
 
     def __len__(self) -> int:
         return len(self.number)
+
+    def taken(self, some: np.ndarray) -> Run:
+        """The run in some of the drawn rows."""
+        return timelines.take(self.run, some)
 
     @property
     def lit(self) -> np.ndarray:

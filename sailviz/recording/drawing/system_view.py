@@ -1,9 +1,7 @@
-"""The system view: centre, planets, orbits, trail and craft, in units of order 1 to 100 (never metres, Rerun is
-float32).
+"""Flights in open space: the centre, the trail, the push along it, the craft and what stands round, in units of order 1
+to 100 (never metres: Rerun draws in float32).
 
-What moves has rows; what depends on how far the run reaches (sizes of the craft, of arrows, of the Sun) is a static
-scale that is written again at the end. Craft and arrows hang under `/world/craft`, which moves with the craft without
-turning.
+Craft and arrow hang under /world/craft, which moves with the craft without turning; /world/rtn turns with its orbit.
 """
 
 from __future__ import annotations
@@ -11,243 +9,286 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from sailviz.frames import body_axes, from_frame, quaternion
+from sailviz.frames import body_axes, quaternion, unit
 from sailviz.recording.contract import word
-from sailviz.recording.drawing import style
-from sailviz.recording.drawing.craft import CraftDrawing, Glow, log_tether
-from sailviz.recording.drawing.layout import Layout
+from sailviz.recording.drawing import cameras, style
+from sailviz.recording.drawing.cameras import Camera
+from sailviz.recording.drawing.craft import Glow
+from sailviz.recording.drawing.fence import Fence, fence_of, log_fence
+from sailviz.recording.drawing.ghosts import log_ghosts
+from sailviz.recording.drawing.landmarks import Landmarks, landmarks_of, log_landmarks, nominal_words, reaches
+from sailviz.recording.drawing.layout import ALL, SO_FAR, TO_COME, Space, Span
 from sailviz.recording.drawing.log import Picture, f4
-from sailviz.recording.drawing.orbit_plane import OrbitPlane, notes
-from sailviz.recording.drawing.planet import Planet
-from sailviz.recording.drawing.samples import PLANE_TURNS, SPARSE, Frame, Samples, arc, orbits, smooth_lines
+from sailviz.recording.drawing.planet import Planet, about_axis
+from sailviz.recording.drawing.samples import orbits
 from sailviz.recording.drawing.sky import log_stars, log_sun
+from sailviz.recording.drawing.story import Story
 from sailviz.recording.drawing.style import points
-from sailviz.run.arrays import Reference, Run
+from sailviz.recording.drawing.trail import log_trail
+from sailviz.run.arrays import Reference
 from sailviz.shapes.primitives import disc
 
-STRIP = 4  # drawn rows in one piece of the trail
-LADDER = 12  # osculating orbits that show a long descent
-GAP = 2 * SPARSE  # revolutions between rows over which a curve through both would miss the orbit
+SWEEP_TURNS = 1.25  # revolutions up to which the eye goes along
+ASPECT = 1005 / 576  # of the main view in a window of 1600 x 900
+SWEPT = 5  # angles of a sweep at which everything must fit
+LADDER = 12  # osculating orbits that show a flight of many turns
+EDGES = 0.10  # of the time at either end, whose pictures count more
+FLAT, HIGH = (30.0, 38.0, 42.0), (38.0, 44.0)  # deg, elevations of the eye over flights of few and of many turns
+LIFTED_FILM, LIFTED_WHEEL = (-24.0, -14.0, -4.0, 8.0, 20.0, 26.0), (20.0, 24.0, 28.0)
 
 
-class SystemView:
-    """Writes /world."""
-
-    def __init__(self, picture: Picture, first: Run, frame: Frame, craft: CraftDrawing):
-        self._picture, self._frame, self._setting, self._craft = picture, frame, first.setting, craft
-        self._held: tuple[np.ndarray, ...] | None = None  # time, position, velocity before the next piece of trail
-        picture.log_static("/world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
-        log_stars(picture, "/world/stars", 1.0)
-        self._planet = not frame.sun and self._setting.body.radius > 0
-        self._center = Planet(picture, first) if self._planet else None
-        self._plane = OrbitPlane(picture, first, frame, LADDER) if self._has_plane else None
-        self.notes = notes(first, frame, LADDER) if self._plane else []
-        if self._setting.family == "transfers":
-            self.notes.append("orbits: pink the target (drawn 0.6 % large), cyan and thin the one reached")
-        if "primer_direction" in first.environment:
-            self.notes.append("the **turquoise** arrow is the primer vector, which the steering follows")
-        if frame.sun:
-            log_sun(picture)
-        elif not self._planet:
-            picture.log_static("/world/center", rr.Points3D([[0, 0, 0]], radii=points(7), colors=[style.SUN]))
-        if not self._planet:
-            picture.log_mesh("/world/ecliptic", disc(0.06, style.DISC_RADIUS), style.ECLIPTIC, shaded=False)
-            picture.log_strip_style("/world/sun_line", style.SUN_LINE, style.WIDTH["helper"])
-            picture.log_strip_style("/world/height", style.HEIGHT, style.WIDTH["helper"])
-        for reference in self._setting.references:
-            log_reference(picture, reference, frame.unit)
-        for name in first.bodies:
-            if name != "Sun":
-                color = style.planet_color(name)
-                picture.log_static(
-                    f"/world/planets/{name}/body",
-                    rr.Points3D.from_fields(radii=points(style.PLANET_DOTS.get(name, 4.6)), colors=[color]),
-                )
-                picture.log_label_style(f"/world/names/{name}", color, name)
-        for name in first.approximations:
-            path = f"/world/approximation/{word(name)}"
-            picture.log_static(
-                f"{path}/place", rr.Points3D.from_fields(radii=points(4.2), colors=[style.APPROXIMATION])
-            )
-            picture.log_label_style(f"{path}/name", style.APPROXIMATION, name)
-        self._log_craft()
-        self._log_trail_style()
-
-    def _log_craft(self) -> None:
-        picture = self._picture
-        self._craft.log_shape(picture, "/world/craft/body/shape", False)
-        if self._craft.tether:
-            log_tether(picture, "/world/craft/body/tether", 0.0, 1.2, 0.1, near=False)
-        self._glow = Glow(picture, "/world/craft/body", self._craft)
-        picture.log_arrow_style("/world/craft/thrust/arrow", style.THRUST, style.WIDTH["thrust"])
-        picture.log_arrow_style("/world/craft/velocity/arrow", style.VELOCITY, style.WIDTH["velocity"])
-        picture.log_arrow_style("/world/craft/primer/arrow", style.PRIMER, style.WIDTH["velocity"])
-        picture.log_label_style("/world/craft/primer/name", style.PRIMER, "primer")
-
-    def _log_trail_style(self) -> None:
-        picture, color = self._picture, None if self._planet else style.TRAIL_RECENT
-        if self._frame.sparse and not self._plane:
-            picture.log_strip_style("/world/orbit", color, style.WIDTH["recent"] * 0.8)
-        elif not self._frame.sparse:
-            picture.log_strip_style("/world/trail/recent", color, style.WIDTH["recent"])
-            if not self._planet:
-                picture.log_strip_style("/world/trail/past", style.TRAIL_PAST, style.WIDTH["past"])
-                picture.log_strip_style("/world/trail/future", style.TRAIL_FUTURE, style.WIDTH["future"])
-        if self._has_ladder:
-            picture.log_strip_style("/world/ladder", None, style.WIDTH["ladder"])
-
-    @property
-    def _has_ladder(self) -> bool:
-        return self._frame.sparse or self._has_plane
-
-    @property
-    def _has_plane(self) -> bool:
-        return self._planet and self._frame.turns > PLANE_TURNS
-
-    def add(self, samples: Samples) -> None:
-        """A group of drawn rows: whole pieces of trail, except at the end of the run."""
-        picture, index = self._picture, samples.index
-        picture.log_pose("/world/craft", index, translation=samples.position)
-        picture.log_pose("/world/rtn", index, translation=samples.position, quaternion=quaternion(samples.axes))
-        normal = from_frame(samples.axes, samples.normal_rtn)
-        picture.log_pose("/world/craft/body", index, quaternion=quaternion(body_axes(normal, samples.axes[..., 1])))
-        self._glow.add(samples.index_of, samples.run.thrust.on)
-        picture.log_arrows("/world/craft/thrust/arrow", index, from_frame(samples.axes, samples.thrust_rtn))
-        picture.log_arrows("/world/craft/velocity/arrow", index, from_frame(samples.axes, samples.velocity_rtn))
-        if samples.primer_rtn is not None:
-            primer = from_frame(samples.axes, samples.primer_rtn)
-            picture.log_arrows("/world/craft/primer/arrow", index, primer)
-            picture.log_labels("/world/craft/primer/name", index, 1.06 * primer)
-        if self._center:
-            self._center.add(samples)
-        for name, position in samples.run.bodies.items():
-            if name != "Sun":
-                picture.log_columns(
-                    f"/world/planets/{name}/body", index, rr.Points3D.columns(positions=f4(position / self._frame.unit))
-                )
-                picture.log_labels(f"/world/names/{name}", index, position / self._frame.unit)
-        for name, position in samples.run.approximations.items():
-            path, place = f"/world/approximation/{word(name)}", position / self._frame.unit
-            picture.log_columns(f"{path}/place", index, rr.Points3D.columns(positions=f4(place)))
-            picture.log_labels(f"{path}/name", index, place)
-        if not self._planet:
-            zero = np.zeros_like(samples.position)
-            foot = samples.position * [1.0, 1.0, 0.0]
-            picture.log_strips("/world/sun_line", index, np.stack([zero, samples.position], 1))
-            picture.log_strips("/world/height", index, np.stack([foot, samples.position], 1))
-        if self._plane:
-            self._plane.add(samples, self._ramp(samples))
-        elif self._frame.sparse:
-            colors = self._ramp(samples) if self._planet else None
-            picture.log_strips("/world/orbit", index, orbits(samples.run, self._frame), colors)
-        if not self._frame.sparse:
-            self._add_trail(samples)
-
-    def _add_trail(self, samples: Samples) -> None:
-        """Pieces of STRIP rows that join on; each stands at its last row, so that it shows when it has been flown."""
-        new = (samples.run.time, samples.position, samples.velocity)
-        held = self._held or tuple(part[:1] for part in new)  # a piece needs a point before it
-        self._held = tuple(part[-1:] for part in new)
-        pieces = self._frame.smooth
-        time, position, velocity = (np.concatenate(parts) for parts in zip(held, new, strict=True))
-        line = smooth_lines(time, position, velocity, pieces)
-        gaps = np.diff(time)
-        arcs = {  # where rows lie far apart on their orbit
-            k: arc(samples.run, k, position[k], float(gaps[k]), self._frame)
-            for k in np.flatnonzero(self._wide(samples.run, gaps)).tolist()
-        }
-        whole, rest = divmod(len(samples), STRIP)
-        for start, number, length in ((0, whole, STRIP), (whole * STRIP, min(rest, 1), rest)):
-            if number == 0:
-                continue
-            first = start + STRIP * np.arange(number)
-            ends = first + length - 1
-            index = samples.index_of(ends)
-            colors = self._ramp(samples)[ends] if self._planet else None
-            for part in ("recent",) if self._planet else ("recent", "past", "future"):
-                if arcs:
-                    strips = [drawn(line, arcs, k, k + length, pieces) for k in first.tolist()]
-                    self._picture.log_broken_strips(f"/world/trail/{part}", index, strips, colors)
-                else:
-                    strips = line[first[:, None] * pieces + np.arange(length * pieces + 1)]
-                    self._picture.log_strips(f"/world/trail/{part}", index, strips, colors)
-
-    def _wide(self, run: Run, gaps: np.ndarray) -> np.ndarray:
-        """Whether the time since the row before is so long that a curve through both would miss the orbit. (n,)"""
-        e = run.elements
-        with np.errstate(invalid="ignore"):
-            turn = 2 * np.pi * np.sqrt(e.semi_major_axis**3 / self._frame.mu)
-            wide: np.ndarray = (e.eccentricity < 1) & (gaps > GAP * turn)
-            return wide
-
-    def _ramp(self, samples: Samples, factor: float = 1.0) -> np.ndarray:
-        """Colours (n,) by altitude, HIGH at the start to LOW on the ground; the root because a descent ends fast."""
-        start = max(self._frame.origin_radius - 1, 1e-9)
-        altitude = samples.run.elements.semi_major_axis / self._frame.unit - 1
-        down = np.sqrt(np.clip(1 - altitude / start, 0, 1))
-        stops = factor * np.array([style.HIGH, style.BETWEEN, style.LOW], float)
-        rgb = np.stack([np.interp(down, [0.0, 0.5, 1.0], stops[:, k]) for k in range(3)], 1).astype(np.uint32)
-        return (rgb[:, 0] << 24) | (rgb[:, 1] << 16) | (rgb[:, 2] << 8) | 255
-
-    def add_ladder(self, samples: Samples) -> None:
-        """Osculating orbits of a few rows far apart, always in sight: the whole descent at a glance."""
-        if self._has_ladder and len(samples):
-            color = self._ramp(samples, 0.55) if self._planet else np.full(len(samples), style.rgba(style.TRAIL_FUTURE))
-            if self._plane:
-                self._plane.add_ladder(samples, self._ramp(samples))
-            self._picture.log_strips("/world/ladder", samples.index, orbits(samples.run, self._frame, 241), color)
-
-    def finish(self, last: Samples) -> None:
-        """The orbit that a transfer has reached, to be seen beside the one it aimed at."""
-        if self._setting.family == "transfers" and self._frame.sun:
-            line = orbits(last.run, self._frame, 361)[-1]
-            self._picture.log_lines(
-                "/world/references/reached", [line], style.dim(style.TRAIL_RECENT, 0.75), style.WIDTH["orbit"]
-            )
-
-    def size(self, layout: Layout) -> None:
-        """Everything that depends on how far the run reaches."""
-        picture, radius = self._picture, layout.scene_radius
-        picture.log_scale("/world/stars", style.STARS_RADIUS * radius)
-        if self._frame.sun:
-            picture.log_scale("/world/sun", style.SUN_RADIUS * radius)
-        if not self._planet:
-            picture.log_scale("/world/ecliptic", radius)
-        if self._craft.size > 0:
-            picture.log_scale("/world/craft/body/shape", layout.sail_size)
-        if self._craft.tether:
-            picture.log_scale("/world/craft/body/tether", layout.tether_size)
-        picture.log_scale("/world/craft/thrust", layout.thrust_scale)
-        picture.log_scale("/world/craft/velocity", style.VELOCITY_LENGTH * radius)
-        picture.log_scale("/world/craft/primer", style.PRIMER_LENGTH * radius)
-        name = self._setting.craft.label or "craft"
-        if self._planet:  # outwards, so that it does not lie on the planet
-            picture.log_label("/world/rtn/name", name, style.CRAFT, (0.17 * radius, 0.0, 0.0))
-        else:
-            picture.log_label("/world/craft/name", name, style.CRAFT, (0.0, 0.0, style.LABEL_HEIGHT * radius))
+def log_system(picture: Picture, story: Story) -> tuple[list[Space], dict[str, Span], str]:
+    """Write /world -> its views, the spans that they show of what is past and to come, and what is made up."""
+    found, fence = landmarks_of(story), fence_of(story)
+    size = craft_size(story)
+    log_backdrop(picture, story)
+    log_references(picture, story, found)
+    log_craft(picture, story, size)
+    log_approximations(picture, story)
+    spans = log_trail(picture, story)
+    if fence is not None:
+        log_fence(picture, story, fence)
+        for part, span in (("past", SO_FAR), ("future", TO_COME)):
+            spans |= {f"/world/fence/{part}": span, f"/world/fence/{part}/edge": span} if not story.ring else {}
+        log_ghosts(picture, story, size)
+    camera, turn = main_camera(story, found, fence, size)
+    if np.any(turn):
+        picture.log_pose("/world/pan", story.index, quaternion=about_axis(turn))
+    log_landmarks(picture, story, found, first_eye(camera))
+    log_push_name(picture, story, size, turned(np.tile(first_eye(camera), (len(turn), 1)), -turn))
+    if story.frame.sparse:
+        log_ladder(picture, story)
+        spans["/world/ladder"] = ALL
+    return views_of(story, camera), spans, nominal_words(found)
 
 
-def drawn(line: np.ndarray, arcs: dict[int, np.ndarray], start: int, end: int, pieces: int) -> list[np.ndarray]:
-    """The lines of the intervals from `start` to `end`: the curve through all of them, broken where there are arcs."""
-    lines, begun = [], start
-    for k in range(start, end):
-        if k in arcs:
-            lines += [line[begun * pieces : k * pieces + 1]] if k > begun else []
-            lines.append(arcs[k])
-            begun = k + 1
-    return lines + ([line[begun * pieces : end * pieces + 1]] if end > begun else [])
+def system_words(story: Story) -> list[str]:
+    """What colours of lines mean, where a scene has such lines."""
+    words = []
+    if any(r.role == "target" and misses(story, r) for r in story.setting.references):
+        words.append("orbits: **pink** the target, thin **cyan** the one reached")
+    if story.samples.primer_rtn is not None and story.about("primer"):
+        words.append("close up, the **turquoise** arrow is the primer: where the fastest flight would push")
+    return words
+
+
+def craft_size(story: Story) -> float:
+    """Side of a film, radius of a wheel, in view units; 0 where there is only a dot."""
+    among = style.AMONG_MANY if story.setting.ensembles else 1.0
+    return story.craft.size * story.reach * among
+
+
+def log_backdrop(picture: Picture, story: Story) -> None:
+    """Stars, the centre and the plane x, y."""
+    picture.log_static("/world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
+    log_stars(picture, "/world/stars", style.STARS_RADIUS * story.reach)
+    body = story.setting.body
+    if story.frame.sun:
+        log_sun(picture)
+        picture.log_scale("/world/sun", style.SUN_RADIUS * story.reach)
+    elif body.radius > 0:
+        Planet(picture, story.setting, "Sun" in story.samples.run.bodies).add(story.samples)
+    else:
+        picture.log_static("/world/center", rr.Points3D([[0, 0, 0]], radii=points(7), colors=[style.SUN]))
+    if story.frame.sun or body.radius == 0:
+        picture.log_mesh("/world/ecliptic", disc(0.06, style.DISC_RADIUS), style.ECLIPTIC, shaded=False)
+        picture.log_scale("/world/ecliptic", story.reach)
+
+
+def log_references(picture: Picture, story: Story, found: Landmarks) -> None:
+    """Orbits that are there from the start, and the one that a transfer reached."""
+    for reference in story.setting.references:
+        if reference.role != "planet":
+            log_reference(picture, reference, story.frame.unit)
+    if found.target is not None and misses(story, found.target):
+        line = orbits(story.samples.taken(np.array([-1])), story.frame, 361)[-1]
+        color = style.dim(style.TRAIL_RECENT, 0.75)
+        picture.log_lines("/world/references/reached", [line], color, style.WIDTH["orbit"])
+
+
+def misses(story: Story, target: Reference) -> bool:
+    """Whether a transfer ends on another orbit than the one it aimed at, as far as the eye can tell."""
+    return story.setting.family == "transfers" and story.frame.sun and not story.ring and not reaches(story, target)
 
 
 def log_reference(picture: Picture, reference: Reference, length: float) -> None:
-    """An orbit that is there from the start. A target is drawn a little large: on the trail it would tear."""
+    """An orbit or a way that is known before the flight. A target is drawn a little large: on the trail it would
+    tear."""
     line = np.asarray(reference.points, float) / length
-    if reference.role == "planet":
-        color = style.dim(style.planet_color(reference.name))
-        picture.log_lines(f"/world/planets/{reference.name}/orbit", [line], color, style.WIDTH["orbit"])
-        return
     target = reference.role == "target"
     color, width = (style.TARGET, "target") if target else (style.INITIAL, "orbit")
     if reference.role == "approximation":
         color = style.dim(style.APPROXIMATION)
     name = reference.name.lower().replace(" ", "_").replace("/", "_")
-    picture.log_lines(f"/world/references/{name}", [1.006 * line if target else line], color, style.WIDTH[width])
+    picture.log_lines(f"/world/references/{name}", [1.004 * line if target else line], color, style.WIDTH[width])
+
+
+def log_craft(picture: Picture, story: Story, size: float) -> None:
+    """The craft in its attitude, its push, the line from the Sun."""
+    samples, index, craft = story.samples, story.index, story.craft
+    picture.log_pose("/world/craft", index, translation=samples.position)
+    picture.log_pose("/world/rtn", index, translation=samples.position, quaternion=quaternion(samples.axes))
+    turn = quaternion(body_axes(story.normal, samples.axes[..., 1]))
+    picture.log_pose("/world/craft/body", index, quaternion=turn)
+    craft.log_shape(picture, "/world/craft/body/shape", False)
+    if size > 0:
+        picture.log_scale("/world/craft/body/shape", size)
+    Glow(picture, "/world/craft/body", craft).add(samples.index_of, samples.run.thrust.on)
+    if story.most > 0:
+        picture.log_arrow_style("/world/craft/push", style.PUSH, style.WIDTH["push"])
+        picture.log_arrows("/world/craft/push", index, story.arrow())
+    if story.frame.sun:
+        picture.log_strip_style("/world/sun_line", style.SUN_LINE, style.WIDTH["helper"])
+        near = 0.06 * story.reach * unit(samples.position)
+        picture.log_strips("/world/sun_line", index, np.stack([near, samples.position], 1))
+    if story.lifted and story.frame.sun:
+        picture.log_strip_style("/world/height", style.HEIGHT, style.WIDTH["helper"])
+        foot = samples.position * [1.0, 1.0, 0.0]
+        picture.log_strips("/world/height", index, np.stack([foot, samples.position], 1))
+    if size == 0 or story.setting.ensembles:
+        return
+    if story.most <= 0:
+        name = story.setting.craft.label or "craft"
+        picture.log_label("/world/craft/name", name, style.CRAFT, (0.0, 0.0, -0.6 * size))
+
+
+def log_approximations(picture: Picture, story: Story) -> None:
+    """Where other answers to the same question put the craft."""
+    for name, position in story.samples.run.approximations.items():
+        path, place = f"/world/approximation/{word(name)}", position / story.frame.unit
+        dot = rr.Points3D.from_fields(radii=points(4.2), colors=[style.APPROXIMATION])
+        picture.log_static(f"{path}/place", dot)
+        picture.log_columns(f"{path}/place", story.index, rr.Points3D.columns(positions=f4(place)))
+        picture.log_label_style(f"{path}/name", style.APPROXIMATION, name)
+        picture.log_labels(f"{path}/name", story.index, place)
+
+
+def log_ladder(picture: Picture, story: Story) -> None:
+    """Osculating orbits of a few rows far apart, always in sight: a flight of many turns at a glance."""
+    rows = story.ladder(LADDER)
+    color = np.full(len(rows), style.rgba(style.TRAIL_FUTURE))
+    picture.log_strip_style("/world/ladder", None, style.WIDTH["ladder"])
+    lines = orbits(story.samples.taken(rows), story.frame, 241)
+    picture.log_strips("/world/ladder", story.samples.index_of(rows), lines, color)
+
+
+def main_camera(story: Story, found: Landmarks, fence: Fence | None, size: float) -> tuple[Camera, np.ndarray]:
+    """The eye over the flight: on its lit side, and in a flight of up to a turn and a quarter slowly going along; and
+    by how much it has turned in each row (n,), rad."""
+    film = story.craft.facing
+    moments = story.moments
+    weights = moment_weights(story, *((5.0, 2.0) if film else (2.0, 4.0)))[moments]
+    normals, thrusts = story.normal[moments], unit(story.thrust[moments])
+    if not (film or story.craft.slanted):
+        normals = np.tile([0.0, 0.0, 1.0], (len(moments), 1))
+    turn = np.zeros(len(story.time))
+    if story.turns <= SWEEP_TURNS and not story.ring and story.turns > 0.02:
+        going = cameras.sweep(
+            normals, thrusts, unit(story.position[moments]), story.share[moments], weights, film, FLAT[1]
+        )
+        eye, turn = going.eye, going.turn * story.share
+    else:
+        near = (0.25 if film else 0.55) * unit(story.position[0])
+        spots = np.array([np.zeros(3), story.position[0], *near_planets(story, found)]) / story.reach
+        eye = cameras.fixed_eye(normals, thrusts, weights, film, elevations(story), near=near, spots=spots)
+    places = places_in_sight(story, found, fence, size, turn)
+    at, target = cameras.fit(places, eye, ASPECT, 0.93 if np.any(turn) else 0.90)
+    origin = "/world/pan" if np.any(turn) else "/"
+    return Camera("Flight", origin, tuple(at.tolist()), tuple(target.tolist())), turn
+
+
+def first_eye(camera: Camera) -> np.ndarray:
+    """The direction (3,) from which a camera looks, at the start."""
+    eye: np.ndarray = unit(np.array(camera.position) - np.array(camera.target))
+    return eye
+
+
+def moment_weights(story: Story, first: float, last: float) -> np.ndarray:
+    """What each row counts when an eye is chosen, (n,): its time, the ends more."""
+    share = story.share
+    weights = np.where(share < EDGES, first, np.where(share > 1 - EDGES, last, 1.0))
+    if len(share) < 2:
+        return np.ones(len(share))
+    return np.asarray(weights * np.maximum(np.gradient(share), 1e-12))
+
+
+def elevations(story: Story) -> tuple[float, ...]:
+    """Heights of the eye, deg, that are tried for a fixed one."""
+    if story.lifted:
+        return LIFTED_FILM if story.craft.facing else LIFTED_WHEEL
+    return HIGH if story.turns > 3 and not story.ring else FLAT
+
+
+def near_planets(story: Story, found: Landmarks) -> list[np.ndarray]:
+    """First places of the planets whose names are written, those on the craft left out."""
+    first = [place[0] for place in found.places.values()]
+    return [
+        place
+        for place in first
+        if np.linalg.norm(place) >= 0.18 * story.reach and np.linalg.norm(place - story.position[0]) > 0.1 * story.reach
+    ]
+
+
+def places_in_sight(story: Story, found: Landmarks, fence: Fence | None, size: float, turn: np.ndarray) -> np.ndarray:
+    """Everything that must fit, (k, 3), in the frame of the eye, which turns by `turn` (n,) rad."""
+    position, arrow = story.position, story.arrow()
+    still = [position, *found.farthest(story.reach)]
+    if fence is not None:
+        still.append(fence.top)
+    still += [
+        reference.points / story.frame.unit for reference in story.setting.references if reference.role == "initial"
+    ]
+    for ensemble in story.setting.ensembles:
+        still.append(ensemble.places(ensemble.kept[:, -1]).reshape(-1, 3) / story.frame.unit)
+    if not np.any(turn):
+        arrows = position + arrow if story.ring else (position + arrow)[[0, -1]]
+        around = position[[0, -1], None] + size * np.array([[0, 0, -1.0], [0, 0, 1.0]])
+        return np.concatenate([*still, arrows, around.reshape(-1, 3)])
+    fixed = np.concatenate(still)
+    swept = [turned(fixed, np.full(len(fixed), angle)) for angle in np.linspace(0, turn[-1], SWEPT)]
+    edge = np.array([0.0, 0.0, size])
+    moving = [position + 1.15 * arrow, position - edge, position + edge]
+    return np.concatenate(swept + [turned(part, turn) for part in moving])
+
+
+def turned(places: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """Places (n, 3) in a frame that has turned about z by angles (n,) rad."""
+    c, s = np.cos(angle), np.sin(angle)
+    x, y, z = places.T
+    return np.stack([c * x + s * y, c * y - s * x, z], 1)
+
+
+def log_push_name(picture: Picture, story: Story, size: float, eye: np.ndarray) -> None:
+    """The word "push" beyond the tip of its arrow as seen from directions (n, 3), clear of the film."""
+    if story.most <= 0:
+        return
+    arrow = story.arrow()
+    flat = arrow - np.sum(arrow * eye, 1, keepdims=True) * eye
+    length = np.linalg.norm(flat, axis=1, keepdims=True)
+    place = unit(flat) * np.maximum(length + 0.045 * story.reach, 0.9 * size)
+    place = np.where((story.push > 0)[:, None], place, np.nan)
+    picture.log_label_style("/world/craft/push_name", style.PUSH, "push")
+    picture.log_labels("/world/craft/push_name", story.index, place)
+
+
+def views_of(story: Story, camera: Camera) -> list[Space]:
+    """The main view, from above, and riding along."""
+    reach = story.reach
+    tubes = [f"- /world/cloud/{word(ensemble.name)}/tube/**" for ensemble in story.setting.ensembles]
+    everything = ("+ /world/**", *tubes)
+    top = float(max(2.35 * reach, 1.5 * story.position[:, 2].max() + 1.2 * reach))
+    ride = riding_eye(story) * 0.75 * reach
+    along = (*everything, "- /world/names/**", "- /world/marks/**", "- /world/craft/push_name")
+    return [
+        Space(camera, everything),
+        Space(Camera("From above", "/", (0.0, -0.01 * reach, top)), everything),
+        Space(Camera("Riding along", "/world/rtn", tuple(ride.tolist())), along),
+    ]
+
+
+def riding_eye(story: Story) -> np.ndarray:
+    """Where the view along with the craft looks from, in its orbital frame."""
+    moments, samples = story.moments, story.samples
+    normals, thrusts = samples.normal_rtn[moments], unit(samples.thrust_rtn[moments])
+    weights = moment_weights(story, 5.0, 2.0)[moments]
+    return cameras.fixed_eye(normals, thrusts, weights, story.craft.facing, (14.0, 22.0, 30.0))

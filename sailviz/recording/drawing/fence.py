@@ -1,0 +1,131 @@
+"""The push along the way: a wall on the trail whose height and brightness say how hard, and whose lean which way.
+
+It is there from the first frame, faint where it is still to be flown. Past and future are two entities with the same
+pieces, each stamped at its last time, of which the view shows the rows before and after the cursor.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import rerun as rr
+
+from sailviz.frames import unit
+from sailviz.recording.drawing import style
+from sailviz.recording.drawing.log import Picture, f4
+from sailviz.recording.drawing.story import Story
+
+PIECES = 60
+ROWS = 1500  # of the wall, at most
+ALONG = 0.35  # of the thrust: what is across the trail by less than this leans along it
+HIGH, RING_HIGH, LEAST_HIGH = 0.17, 0.11, 0.07  # of S, at the largest push
+MANY_TIMES = 3.0  # largest push over the median from which heights are roots
+STEADY = 0.02  # relative change of the push below which it has one brightness
+STEADY_SHARE = 0.72
+FOOT = 0.30  # brightness at the trail
+ALPHA = {"past": 112, "future": 30, "ring": 80}
+
+
+@dataclass(frozen=True)
+class Fence:
+    """base, top : (n, 3) view units; strength (n,) 0 to 1; row (n,) of the story's rows."""
+
+    base: np.ndarray
+    top: np.ndarray
+    strength: np.ndarray
+    row: np.ndarray
+
+
+def fence_of(story: Story) -> Fence | None:
+    """The wall of a flight; None where nothing pushes."""
+    if story.most <= 0 or not np.any(np.linalg.norm(story.thrust, axis=1) > 0):
+        return None
+    count = story.once_round
+    row = np.unique(np.linspace(0, count - 1, min(count, ROWS)).astype(int))
+    push = story.push[row]
+    reached = push.max() or 1.0
+    size = push / reached
+    if reached > MANY_TIMES * np.median(push):
+        size = np.sqrt(size)
+    steady = np.ptp(push) <= STEADY * reached
+    strength = np.full(len(row), STEADY_SHARE) if steady else push / reached
+    base = story.position[row]
+    return Fence(base, base + high(story) * story.reach * size[:, None] * leaning(story)[row], strength, row)
+
+
+def high(story: Story) -> float:
+    """Height at the largest push, of S: half of the gap between turns, so that turns do not hide each other."""
+    if story.ring:
+        return RING_HIGH
+    if story.turns <= 1.5:
+        return HIGH
+    depth = (story.distance.max() - story.distance.min()) / max(story.turns - 0.5, 1.0) / story.reach
+    return float(min(HIGH, max(0.5 * depth, LEAST_HIGH)))
+
+
+def leaning(story: Story) -> np.ndarray:
+    """(n, 3) unit vectors: where the thrust points or, where it lies along the trail, the orbit's normal."""
+    ahead = unit(story.samples.velocity)
+    thrust = unit(story.thrust)
+    across = thrust - np.sum(thrust * ahead, 1, keepdims=True) * ahead
+    pushing = story.push > 0
+    if np.median(np.linalg.norm(across[pushing], axis=1)) >= ALONG:
+        return np.asarray(thrust)
+    return np.asarray(unit(np.cross(story.position, story.samples.velocity)))
+
+
+def log_fence(picture: Picture, story: Story, fence: Fence) -> None:
+    """Write /world/fence."""
+    if story.ring:
+        log_ring(picture, fence)
+        return
+    cuts = np.unique(np.linspace(0, len(fence.row) - 1, PIECES + 1).astype(int))
+    if len(cuts) < 2:
+        return
+    pairs = list(zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True))
+    index = story.samples.index_of(fence.row[cuts[1:]])
+    corners = [np.concatenate([fence.base[a : b + 1], fence.top[a : b + 1]]) for a, b in pairs]
+    faces = [wall_faces(b - a + 1) for a, b in pairs]
+    colors = [wall_colors(fence.strength[a : b + 1]) for a, b in pairs]
+    edges = [f4(fence.top[a : b + 1]) for a, b in pairs]
+    counts = [len(part) for part in corners]
+    for part in ("past", "future"):
+        path = f"/world/fence/{part}"
+        columns = [
+            *rr.Mesh3D.columns(
+                vertex_positions=f4(np.concatenate(corners)), vertex_colors=np.concatenate(colors)
+            ).partition(counts),
+            *rr.Mesh3D.columns(triangle_indices=np.concatenate(faces)).partition([len(part) for part in faces]),
+            *rr.Mesh3D.columns(albedo_factor=[style.rgba((255, 255, 255), ALPHA[part])] * len(pairs)),
+        ]
+        picture.log_columns(path, index, columns)
+        picture.log_strip_style(f"{path}/edge", style.FENCE_EDGE[part], style.WIDTH[f"fence {part}"])
+        picture.log_columns(f"{path}/edge", index, rr.LineStrips3D.columns(strips=edges))
+
+
+def log_ring(picture: Picture, fence: Fence) -> None:
+    """A ring is drawn once round, and stays."""
+    corners = np.concatenate([fence.base, fence.top])
+    picture.log_static(
+        "/world/fence/ring",
+        rr.Mesh3D(
+            vertex_positions=f4(corners),
+            triangle_indices=wall_faces(len(fence.base)),
+            vertex_colors=wall_colors(fence.strength),
+            albedo_factor=[255, 255, 255, ALPHA["ring"]],
+        ),
+    )
+    picture.log_lines("/world/fence/ring/edge", [fence.top], style.FENCE_EDGE["ring"], style.WIDTH["fence ring"])
+
+
+def wall_faces(count: int) -> np.ndarray:
+    """Triangles (2 count - 2, 3) between `count` points at the foot and as many above them."""
+    k = np.arange(count - 1)
+    below, above = np.stack([k, k + 1, count + k], 1), np.stack([k + 1, count + k + 1, count + k], 1)
+    return np.concatenate([below, above]).astype(np.uint32)
+
+
+def wall_colors(strength: np.ndarray) -> np.ndarray:
+    """Colours (2 n,) of the foot and of the top."""
+    return np.concatenate([style.ramp(strength, style.PUSH_RAMP, FOOT), style.ramp(strength, style.PUSH_RAMP)])

@@ -1,0 +1,54 @@
+"""Where the sail stood on its way: still copies of the craft, darker and half as large, from the first frame on."""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from sailviz.frames import body_axes, quaternion
+from sailviz.recording.drawing import style
+from sailviz.recording.drawing.log import Picture, f4
+from sailviz.recording.drawing.story import Story
+from sailviz.shapes import sails
+from sailviz.shapes.primitives import circle, disc
+
+COUNT, MANY = 12, 14  # up to three turns, and above
+HALF = 0.5  # of the craft's own size
+SPOKES = 4
+
+
+def ghost_rows(story: Story) -> np.ndarray:
+    """Rows evenly along the path, its ends left out; of a ring those of one revolution, evenly in time."""
+    if story.ring:
+        return np.unique(np.linspace(0, story.once_round - 1, COUNT + 1).astype(int)[:-1])
+    step = np.linalg.norm(np.diff(story.position, axis=0), axis=1)
+    way = np.concatenate([[0.0], np.cumsum(step)])
+    count = COUNT if story.turns < 3 else MANY
+    if way[-1] < 1e-3 * story.reach:  # it stands still
+        return np.array([], int)
+    return np.unique(np.searchsorted(way, np.linspace(0, way[-1], count + 2)[1:-1]).clip(0, len(way) - 1))
+
+
+def log_ghosts(picture: Picture, story: Story, size: float) -> None:
+    """Write /world/ghosts. size : of the craft, view units."""
+    rows = ghost_rows(story)
+    if len(rows) == 0 or not (story.craft.facing or story.craft.slanted):
+        return
+    place, axes = story.position[rows], body_axes(story.normal[rows], story.samples.axes[rows][..., 1])
+    small = HALF * size
+    poses = rr.InstancePoses3D(
+        translations=f4(place), quaternions=f4(quaternion(axes)), scales=f4(np.full((len(rows), 3), small))
+    )
+    if story.craft.facing:
+        film = sails.film()
+        for name, color, side in (("lit", style.FILM_LIT, "back"), ("dark", style.FILM_DARK, "front")):
+            picture.log_mesh(f"/world/ghosts/{name}", film, style.dim(color, style.GHOST), side=side)
+            picture.log_static(f"/world/ghosts/{name}", poses)
+        return
+    turn = np.pi * np.arange(SPOKES) / SPOKES
+    out = np.stack([np.cos(turn), np.sin(turn), 0 * turn], 1)
+    flat = [circle(49), *(np.stack([-d, d]) for d in out)]
+    lines = [at + small * line @ frame.T for at, frame in zip(place, axes, strict=True) for line in flat]
+    picture.log_lines("/world/ghosts/wheels", lines, style.GHOST_WHEEL, style.WIDTH["ghost"])
+    picture.log_mesh("/world/ghosts/discs", disc(0.0, 1.0, 40), style.GHOST_DISC, shaded=False)
+    picture.log_static("/world/ghosts/discs", poses)

@@ -1,0 +1,118 @@
+"""The line on top: when it is, where the craft is, how fast, what pushes it and how the sail stands, in words and units
+of people. It is the clock of a recording.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import rerun as rr
+
+from sailviz.recording.drawing.log import Picture
+from sailviz.recording.drawing.phrases import digits, moments, push_words
+from sailviz.recording.drawing.story import Story
+from sailviz.run.arrays import EnsembleStatistics
+
+ROWS = 700
+BETWEEN = " · "
+
+
+def now_texts(story: Story) -> list[str]:
+    """What is said of each drawn row (n,)."""
+    if story.frame.low:
+        parts = [altitude_words(story), speed_words(story, 2), drag_words(story), *light_words(story)]
+    else:
+        parts = [distance_words(story)]
+        if story.setting.ensembles:
+            parts += [push_words(story.push)] if story.most > 0 else []
+            parts += [ensemble_words(story)]
+        else:
+            parts += [speed_words(story, 1)]
+            parts += [push_words(story.push)] if story.craft.pushes else []
+            parts += [angle_words(story)] if story.craft.flow_word else []
+    when = moments(story.time, story.setting.epoch)
+    return [BETWEEN.join(row) for row in zip(when, *parts, strict=True)]
+
+
+def log_now(picture: Picture, story: Story) -> None:
+    """Write /now: about ROWS rows, the first and the last among them."""
+    some = np.unique(np.linspace(0, len(story.time) - 1, min(ROWS, len(story.time))).astype(int))
+    texts = now_texts(story)
+    lines = ["### " + texts[k].replace(BETWEEN, "   ·   ") for k in some.tolist()]
+    columns = rr.TextDocument.columns(text=lines, media_type=["text/markdown"] * len(lines))
+    picture.log_columns("/now", story.samples.index_of(some), columns)
+
+
+def distance_words(story: Story) -> list[str]:
+    """From the Sun, or from another body without a surface."""
+    body = story.setting.body.name
+    whose = "the Sun" if body == "Sun" else "the centre" if not story.setting.body.radius else body_words(body)
+    run, unit_name = story.samples.run, story.frame.unit_name
+    away = np.linalg.norm(run.position, axis=1) / story.frame.unit
+    if unit_name.endswith("radii"):
+        return [f"{km:,.0f} km from the centre of {whose}" for km in (away * story.frame.unit / 1e3).tolist()]
+    decimals = 2 if unit_name == "au" and away.max() < 99.5 else digits(float(away.max()))
+    name = unit_name if unit_name == "au" else f"× {unit_name}"
+    return [f"{value:.{decimals}f} {name} from {whose}" for value in away.tolist()]
+
+
+def body_words(name: str) -> str:
+    """The Earth, but Mars."""
+    return f"the {name}" if name in ("Sun", "Earth", "Moon") else name
+
+
+def speed_words(story: Story, decimals: int) -> list[str]:
+    """km/s, or m/s of what hardly moves."""
+    speed = np.linalg.norm(story.samples.run.velocity, axis=1)
+    if speed.max() < 100.0:
+        return [f"{v:.1f} m/s" for v in speed.tolist()]
+    return [f"{v / 1e3:.{decimals}f} km/s" for v in speed.tolist()]
+
+
+def angle_words(story: Story) -> list[str]:
+    """How far the sail is turned off what comes from the Sun."""
+    sail, flow = story.craft.sail_word, story.craft.flow_word
+    return [f"{sail} {a:.0f}° off the {flow}" for a in np.degrees(story.samples.run.attitude.pitch).tolist()]
+
+
+def altitude_words(story: Story) -> list[str]:
+    """Of the drawn row: near re-entry the height above ground, else the mean one of the orbit, and of an ellipse its
+    lowest and highest."""
+    return [f"{high:.0f} km up" for high in (story.altitude / 1e3).tolist()]
+
+
+def drag_words(story: Story) -> list[str]:
+    """What brakes: the force on each metre of a tether, or the deceleration by air."""
+    force = story.samples.run.environment.get("plasma_force_N_m")
+    if force is not None:
+        return [f"drag {1e9 * f:.0f} nN per metre" if f > 0 else "no drag" for f in force.tolist()]
+    return push_words(story.drag, "drag" if story.craft.descends else "air drag")
+
+
+def light_words(story: Story) -> list[list[str]]:
+    """In sunlight or in shadow, where the run knows the Sun."""
+    if "Sun" not in story.samples.run.bodies and "sunlit" not in story.samples.run.environment:
+        return []
+    return [["in sunlight" if lit else "in shadow" for lit in story.samples.lit.tolist()]]
+
+
+def ensemble_words(story: Story) -> list[str]:
+    """How far the flights have spread: without control and with the best one, or the widest and the narrowest."""
+    ensembles = sorted(story.setting.ensembles, key=lambda e: -e.end_deviation[0])
+    widest, narrowest = ensembles[0], ensembles[-1]
+
+    def spread(ensemble: EnsembleStatistics) -> np.ndarray:
+        sigma = np.sqrt(np.maximum(ensemble.covariance[:, 0, 0], 0.0)) / story.frame.unit
+        return np.asarray(np.interp(story.time, ensemble.time, sigma))
+
+    def said(values: np.ndarray, ensemble: EnsembleStatistics, alone: bool) -> list[str]:
+        decimals = int(np.clip(2 - np.floor(np.log10(max(float(values.max()), 1e-6))), 2, 6)) - 1
+        how = "" if alone else " without control" if ensemble.control == "none" else f", {ensemble.name}"
+        return [f"±{value:.{decimals}f} au{how}" for value in values.tolist()]
+
+    first = said(spread(widest), widest, len(ensembles) == 1)
+    if len(ensembles) == 1:
+        return [f"spread {text}" for text in first]
+    second = said(spread(narrowest), narrowest, False)
+    if widest.control == "none" and narrowest.control != "none":
+        second = [text.split(",")[0] + " with" for text in second]
+    return [f"spread {a}, {b}" for a, b in zip(first, second, strict=True)]

@@ -1,0 +1,63 @@
+"""Numbers as people say them, in one unit all along a run: dates, distances, pushes, angles."""
+
+from __future__ import annotations
+
+import numpy as np
+
+DAY = 86400.0
+SHORT = 3 * DAY  # s below which a run is told in hours
+PUSH_UNITS = ((1e-3, "mm/s²"), (1e-6, "µm/s²"), (1e-9, "nm/s²"))
+WIDE = 50.0  # factor between the largest and the median push from which each is told in its own unit
+
+
+def push_unit(most: float) -> tuple[float, str]:
+    """The unit, m/s2 and name, in which a largest push is a handy number."""
+    return next(((size, name) for size, name in PUSH_UNITS if most >= 0.0995 * size), PUSH_UNITS[-1])
+
+
+def digits(most: float) -> int:
+    """Decimals of a number that reaches so far: three figures in all."""
+    return 2 if most < 9.995 else 1 if most < 99.95 else 0
+
+
+def push_words(push: np.ndarray, word: str = "push") -> list[str]:
+    """What acts in each row (n,), m/s2: "push 0.40 mm/s²", "no push"."""
+    most, typical = float(push.max()), float(np.median(push))
+    own = typical > 0 and most > WIDE * typical
+
+    def words(a: float) -> str:
+        reference = a if own else most
+        return f"{word} {amount(a, *push_unit(reference), most=reference)}" if a > 0 else f"no {word}"
+
+    return [words(a) for a in push.tolist()]
+
+
+def amount(value: float, size: float, name: str, most: float) -> str:
+    """A number with its unit and as many decimals as the largest one needs."""
+    return f"{value / size:.{digits(most / size)}f} {name}"
+
+
+def clock(duration: float) -> tuple[float, str]:
+    """The unit in which a run counts its time: s, and its word."""
+    return (3600.0, "Hour") if duration < SHORT else (DAY, "Day")
+
+
+def moments(time: np.ndarray, epoch: np.datetime64 | None) -> list[str]:
+    """When each row (n,), s, is: "2031-02-25  ·  Day 420 of 765"."""
+    duration = float(time[-1] - time[0])
+    size, word = clock(duration)
+    decimals = 0 if duration / size >= 20 else 1
+    total = f"{duration / size:.{decimals}f}"
+    counted = [f"{word} {(t - time[0]) / size:.{decimals}f} of {total}" for t in time.tolist()]
+    if epoch is None:
+        return counted
+    stamps = epoch.astype("datetime64[s]") + np.round(time).astype("timedelta64[s]")
+    dates = np.datetime_as_string(stamps, unit="D" if word == "Day" else "m").tolist()
+    return [f"{date.replace('T', ' ')} · {text}" for date, text in zip(dates, counted, strict=True)]
+
+
+def on_day(seconds: float, duration: float) -> str:
+    """When something happened: "day 427", "hour 5.3"."""
+    size, word = clock(duration)
+    value = seconds / size
+    return f"{word.lower()} {value:.0f}" if duration / size >= 20 else f"{word.lower()} {value:.1f}"

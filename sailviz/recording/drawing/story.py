@@ -1,0 +1,165 @@
+"""The whole run in its drawn rows: what can only be drawn once it is known where the flight goes and how it ends."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from sailviz.frames import from_frame, unit
+from sailviz.recording.drawing.craft import CraftDrawing
+from sailviz.recording.drawing.log import Index
+from sailviz.recording.drawing.samples import Frame, Samples
+from sailviz.run.arrays import Event, Run, Setting
+
+RING_DEPTH = 0.12  # change of distance, of the largest, up to which an orbit counts as one ring
+RING_TILT = 0.05  # rad that its plane may turn
+RING_TURNS = 1.2  # revolutions from which it is drawn once round
+LIFTED = 0.10  # height over the plane x, y, of S, from which a flight counts as lifted out of it
+BRIGHT_TAIL = 0.10  # of the duration, and at most BRIGHT_TURN revolutions: the bright part of the trail
+BRIGHT_TURN = 0.13
+GROUND = 200e3  # m below which a descent is a plunge, without a mean orbit
+
+
+def reach_of(setting: Setting, run: Run) -> float:
+    """The largest distance from the centre, m, that must be in sight."""
+    drawn = [r for r in setting.references if r.role != "planet"]
+    references = [float(np.linalg.norm(reference.points, axis=1).max()) for reference in drawn]
+    spread = [float(e.percentiles.get("radius_m", e.nominal[:, :1].T).max()) for e in setting.ensembles]
+    return max([float(np.linalg.norm(run.position, axis=1).max()), *references, *spread])
+
+
+@dataclass(frozen=True)
+class Story:
+    """The drawn rows of a whole run, n of them, and what happened. Lengths in view units where not said otherwise."""
+
+    samples: Samples
+    frame: Frame
+    craft: CraftDrawing
+    events: tuple[Event, ...]
+    reach: float  # S: the largest distance from the centre that is drawn
+
+    @property
+    def setting(self) -> Setting:
+        """Everything about the run that is not a column."""
+        return self.samples.run.setting
+
+    @property
+    def index(self) -> Index:
+        """The timelines of all rows."""
+        return self.samples.index
+
+    @property
+    def time(self) -> np.ndarray:
+        """(n,) s"""
+        return self.samples.run.time
+
+    @property
+    def duration(self) -> float:
+        """s from the first row to the last."""
+        return float(self.time[-1] - self.time[0])
+
+    @cached_property
+    def share(self) -> np.ndarray:
+        """(n,) of the time that has passed, 0 to 1."""
+        return np.asarray((self.time - self.time[0]) / max(self.duration, 1e-30))
+
+    @property
+    def position(self) -> np.ndarray:
+        """(n, 3) where the craft is drawn."""
+        return self.samples.position
+
+    @cached_property
+    def distance(self) -> np.ndarray:
+        """(n,) from the centre."""
+        return np.asarray(np.linalg.norm(self.position, axis=1))
+
+    @cached_property
+    def normal(self) -> np.ndarray:
+        """(n, 3) of the sail, inertial, at the drawn place."""
+        return np.asarray(from_frame(self.samples.axes, self.samples.normal_rtn))
+
+    @cached_property
+    def thrust(self) -> np.ndarray:
+        """(n, 3) m/s2, inertial, at the drawn place."""
+        return np.asarray(from_frame(self.samples.axes, self.samples.thrust_rtn))
+
+    @property
+    def push(self) -> np.ndarray:
+        """(n,) m/s2, size of the thrust."""
+        return self.samples.run.thrust.magnitude
+
+    @cached_property
+    def most(self) -> float:
+        """m/s2, the largest push; 0 for a ballistic craft."""
+        return float(self.push.max())
+
+    @cached_property
+    def altitude(self) -> np.ndarray:
+        """(n,) m: the mean altitude of the orbit, or, near re-entry, the height of the craft over the ground."""
+        run, radius = self.samples.run, self.setting.body.radius
+        a = run.elements.semi_major_axis
+        mean = run.environment.get("mean_altitude_m", np.where(a > 0, a, np.nan) - radius)
+        own = np.linalg.norm(run.position, axis=1) - radius
+        return np.asarray(np.where((mean > GROUND) & np.isfinite(mean), mean, own))
+
+    @cached_property
+    def drag(self) -> np.ndarray:
+        """(n,) m/s2 of what brakes a craft in low orbit: its tether or, without one, the air."""
+        if self.craft.descends or "air_drag_N" not in self.samples.run.environment:
+            return self.push
+        return np.asarray(self.samples.run.environment["air_drag_N"] / self.samples.run.mass)
+
+    def about(self, word: str) -> bool:
+        """Whether the scene's own words speak of something."""
+        setting = self.setting
+        return any(word in text.lower() for text in (setting.title, setting.about, *setting.look_for))
+
+    @cached_property
+    def turns(self) -> float:
+        """Revolutions flown, by the angle that the line from the centre sweeps."""
+        run = self.samples.run
+        rate = np.linalg.norm(np.cross(run.position, run.velocity), axis=1) / np.sum(run.position**2, 1)
+        return float(np.trapezoid(rate, run.time) / (2 * np.pi)) if len(self.time) > 1 else 0.0
+
+    @cached_property
+    def ring(self) -> bool:
+        """Whether the flight goes round on one ring."""
+        tilt = self.samples.run.elements.inclination
+        depth = self.distance.max() - self.distance.min()
+        level = np.ptp(tilt) < RING_TILT and depth < RING_DEPTH * self.distance.max()
+        return bool(level and self.turns > RING_TURNS)
+
+    @cached_property
+    def lifted(self) -> bool:
+        """Whether the flight leaves the plane x, y."""
+        return bool(np.abs(self.position[:, 2]).max() > LIFTED * self.reach)
+
+    @cached_property
+    def tail(self) -> float:
+        """s of the bright part of the trail."""
+        return min(BRIGHT_TAIL * self.duration, BRIGHT_TURN * self.duration / max(self.turns, 0.2))
+
+    @cached_property
+    def once_round(self) -> int:
+        """Number of rows in the first revolution of a ring; all rows of another flight."""
+        if not self.ring:
+            return len(self.time)
+        return int(np.searchsorted(self.time, self.time[0] + self.duration / self.turns)) + 1
+
+    @cached_property
+    def moments(self) -> np.ndarray:
+        """About sixty rows spread over the time: those by which a camera is judged."""
+        return np.unique(np.searchsorted(self.share, np.linspace(0, 1, 61)).clip(0, len(self.time) - 1))
+
+    def ladder(self, count: int) -> np.ndarray:
+        """Rows at `count` even steps of the time, or the first ones after, the first row among them."""
+        wanted = np.searchsorted(self.share, np.linspace(0, 1, count + 1) - 1e-9)
+        return np.unique(wanted.clip(0, len(self.time) - 1))
+
+    def arrow(self) -> np.ndarray:
+        """(n, 3) the arrow of the push: never short where it pushes at all, nothing where it does not."""
+        least = 0.12 if self.ring else 0.17
+        length = least + least * self.push / self.most if self.most > 0 else np.zeros(len(self.time))
+        return np.asarray((length * (self.push > 0))[:, None] * self.reach * unit(self.thrust))

@@ -68,7 +68,7 @@ def log_ensemble_plots(
             continue
         shown = style.WIND if key == "solar_wind_pressure_Pa" and same_wind else color
         log_band(picture, f"/plots/ensemble/{key}/{word(ensemble.name)}", band, ensemble, index, shown)
-    if ensemble.control in ("pressure", "distance"):
+    if ensemble.control in ("pressure", "distance") and any(np.any(e.saturated) for e in setting.ensembles):
         path = f"/plots/ensemble/saturated/{word(ensemble.name)}"
         log_curve(picture, path, index, 100 * ensemble.saturated, ensemble.name, color, style.WIDTH["plot"])
     ends = [0, -1]
@@ -163,7 +163,7 @@ def rebinned(ensemble: EnsembleStatistics, edges: np.ndarray) -> np.ndarray:
     """Shares (n, b) between coarser edges (b + 1,) m: a flight counts where the middle of its own bin lies, and in the
     last where it is farther."""
     own = 0.5 * (ensemble.histogram_edges[1:] + ensemble.histogram_edges[:-1])
-    place = np.clip(np.searchsorted(edges, own, side="right") - 1, 0, len(edges) - 2)
+    place = np.clip(np.floor(own / edges[1] + 1e-9).astype(int), 0, len(edges) - 2)
     found = np.zeros((len(ensemble.histogram), len(edges) - 1))
     for b in range(found.shape[1]):
         found[:, b] = ensemble.histogram[:, place == b].sum(1)

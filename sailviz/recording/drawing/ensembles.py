@@ -1,4 +1,4 @@
-"""Many flights at once: their paths up to now, where they are, ellipses about their mean, percentiles, histograms.
+"""Many flights at once: their paths up to now, where they are, ellipses about their mean, histograms.
 
 All of it is known when the run begins and written at once. Colours tell ensembles apart everywhere; white is nominal.
 /arrival shows the distance of the flights from the nominal one, each axis with a scale of its own.
@@ -22,7 +22,6 @@ from sailviz.run.arrays import EnsembleStatistics, Setting
 
 PIECE = 3  # rows of an ensemble in one piece of its paths
 BENT = 0.8  # rad that an ellipse may reach along the orbit to be drawn in space
-TUBE_ALPHA = 16
 PATHS = 40  # of an ensemble that are drawn
 AWAY, INSIDE = 0.05, 0.86  # of the reach, from where an ensemble has a name of its own, and where that stands
 
@@ -40,8 +39,6 @@ def log_ensembles(picture: Picture, setting: Setting, frame: Frame) -> dict[str,
         picture.log_static(f"{contract.ensemble_path(ensemble)}/facts", contract.ensemble_facts(ensemble))
         log_flights(picture, setting, ensemble, color, frame.unit)
         log_ellipses(picture, ensemble, index, color, frame.unit)
-        if ensemble.planar:
-            log_tube(picture, ensemble, color, frame.unit)
         log_ensemble_plots(picture, setting, ensemble, index, color, first=k == 0)
         for arrival in arrivals:
             log_arrival(picture, arrival, ensemble, index, color)
@@ -100,18 +97,6 @@ def log_ellipses(picture: Picture, ensemble: EnsembleStatistics, index: Index, c
     reach = np.sqrt(np.maximum(ensemble.covariance[:, 1, 1], 0.0))[:, None] * SIGMAS
     picture.log_strip_style(path, color, style.WIDTH["orbit"])
     picture.log_broken_strips(path, index, [list(g[far < BENT]) for g, far in zip(rings, reach, strict=True)])
-
-
-def log_tube(picture: Picture, ensemble: EnsembleStatistics, color: Color, length: float) -> None:
-    """Percentiles of the distance at the median azimuth."""
-    path, levels = f"/world/cloud/{word(ensemble.name)}/tube", len(ensemble.levels)
-    azimuth = ensemble.percentiles["azimuth_rad"][levels // 2]
-    radii = ensemble.percentiles["radius_m"]
-    edges = [ensemble.places(np.stack([radius, azimuth, 0 * azimuth], -1)) / length for radius in radii]
-    for k in range(levels // 2):
-        picture.log_ribbon(f"{path}/band{k}", edges[k], edges[-1 - k], [*color, TUBE_ALPHA])
-    picture.log_lines(f"{path}/median", [edges[levels // 2]], style.dim(color, 0.85), style.WIDTH["past"])
-    picture.log_lines(f"{path}/edges", [edges[0], edges[-1]], style.dim(color, 0.6), style.WIDTH["future"])
 
 
 def log_nominal(picture: Picture, setting: Setting, length: float) -> None:

@@ -77,16 +77,6 @@ class Picture:
         column = ArrowBatch(pa.concat_arrays([batch[values].as_arrow_array() for batch in batches]))
         self.log_columns(path, index, [rr.ComponentColumn(values, column)])
 
-    def log_ribbon(self, path: str, one: np.ndarray, other: np.ndarray, color: Color) -> None:
-        """The band between two lines (k, 3), seen from both sides; color with alpha."""
-        k = np.arange(len(one) - 1)
-        corners = np.concatenate([one, other])
-        a, b, c, d = k, k + 1, len(one) + k, len(one) + k + 1
-        faces = np.concatenate([np.stack([a, b, c], 1), np.stack([b, d, c], 1)]).astype(np.uint32)
-        self.log_static(
-            path, rr.Mesh3D(vertex_positions=f4(corners), triangle_indices=faces, albedo_factor=list(color))
-        )
-
     def log_triangles(self, path: str, faces: np.ndarray, color: Color) -> None:
         """Faces (m, 3) and colour of a mesh whose corners have rows.
 

@@ -133,12 +133,12 @@ def log_craft(picture: Picture, story: Story) -> None:
         log_tether(picture, "/world/rtn/body/tether", 0.02, 1.8, 0.05)
         scale = f4(np.repeat(tether[:, None], 3, 1))
         picture.log_columns("/world/rtn/body/tether", index, rr.Transform3D.columns(scale=scale))
-        Glow(picture, "/world/rtn/body", craft).add(samples.index_of, samples.run.thrust.on)
     elif craft.pushes:
         craft.log_shape(picture, "/world/rtn/body/shape", True)
         picture.log_scale("/world/rtn/body/shape", FILM)
     else:
         log_drag_sail(picture, story)
+    Glow(picture, "/world/rtn/body", craft).add(samples.index_of, samples.run.thrust.on)
     log_drag(picture, story, tether)
     if np.any(samples.velocity_rtn):
         picture.log_static(
@@ -201,7 +201,7 @@ def drag_texts(story: Story) -> list[str]:
     force = story.samples.run.environment.get("plasma_force_N_m")
     if force is not None:
         return [f"drag {1e9 * f:.0f} nN per metre" if f > 0 else "no drag" for f in force.tolist()]
-    return push_words(story.drag, "drag" if story.craft.descends else "push" if story.craft.pushes else "air drag")
+    return push_words(story.drag, story.drag_word)
 
 
 def log_plumb(picture: Picture, story: Story, tether: np.ndarray) -> None:

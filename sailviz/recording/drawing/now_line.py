@@ -85,7 +85,7 @@ def drag_words(story: Story) -> list[str]:
     force = story.samples.run.environment.get("plasma_force_N_m")
     if force is not None:
         return [f"drag {1e9 * f:.0f} nN per metre" if f > 0 else "no drag" for f in force.tolist()]
-    return push_words(story.drag, "drag" if story.craft.descends else "air drag")
+    return push_words(story.drag, story.drag_word)
 
 
 def light_words(story: Story) -> list[list[str]]:
@@ -104,15 +104,14 @@ def ensemble_words(story: Story) -> list[str]:
         sigma = np.sqrt(np.maximum(ensemble.covariance[:, 0, 0], 0.0)) / story.frame.unit
         return np.asarray(np.interp(story.time, ensemble.time, sigma))
 
-    def said(values: np.ndarray, ensemble: EnsembleStatistics, alone: bool) -> list[str]:
-        decimals = int(np.clip(2 - np.floor(np.log10(max(float(values.max()), 1e-6))), 2, 6)) - 1
-        how = "" if alone else " without control" if ensemble.control == "none" else f", {ensemble.name}"
+    apart = widest.control == "none" and narrowest.control != "none"
+
+    def said(values: np.ndarray, how: str) -> list[str]:
+        decimals = int(np.clip(1 - np.floor(np.log10(max(float(values.max()), 1e-6))), 2, 6))
         return [f"±{value:.{decimals}f} au{how}" for value in values.tolist()]
 
-    first = said(spread(widest), widest, len(ensembles) == 1)
+    first = said(spread(widest), " without control" if apart else f", {widest.name}")
     if len(ensembles) == 1:
-        return [f"spread {text}" for text in first]
-    second = said(spread(narrowest), narrowest, False)
-    if widest.control == "none" and narrowest.control != "none":
-        second = [text.split(",")[0] + " with" for text in second]
+        return [f"spread {text.split(',')[0]}" for text in first]
+    second = said(spread(narrowest), " with" if apart else f", {narrowest.name}")
     return [f"spread {a}, {b}" for a, b in zip(first, second, strict=True)]

@@ -105,9 +105,16 @@ class Story:
         return np.asarray(np.where((mean > GROUND) & np.isfinite(mean), mean, own))
 
     @cached_property
+    def drag_word(self) -> str:
+        """What acts on a craft in low orbit, in words: its tether's drag, its own push or, without either, the air."""
+        if self.craft.descends:
+            return "drag"
+        return "push" if self.craft.pushes or "air_drag_N" not in self.samples.run.environment else "air drag"
+
+    @cached_property
     def drag(self) -> np.ndarray:
-        """(n,) m/s2 of what brakes a craft in low orbit: its tether or, without one, the air."""
-        if self.craft.descends or "air_drag_N" not in self.samples.run.environment:
+        """(n,) m/s2 of that."""
+        if self.drag_word != "air drag":
             return self.push
         return np.asarray(self.samples.run.environment["air_drag_N"] / self.samples.run.mass)
 

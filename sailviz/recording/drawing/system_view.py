@@ -274,8 +274,7 @@ def log_push_name(picture: Picture, story: Story, size: float, eye: np.ndarray) 
 def views_of(story: Story, camera: Camera) -> list[Space]:
     """The main view, from above, and riding along."""
     reach = story.reach
-    tubes = [f"- /world/cloud/{word(ensemble.name)}/tube/**" for ensemble in story.setting.ensembles]
-    everything = ("+ /world/**", *tubes)
+    everything = ("+ /world/**",)
     top = float(max(2.35 * reach, 1.5 * story.position[:, 2].max() + 1.2 * reach))
     ride = riding_eye(story) * 0.75 * reach
     along = (*everything, "- /world/names/**", "- /world/marks/**", "- /world/craft/push_name")

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .measure import PURE, hue, proportional, same_direction, same_place, same_turn
-from .seen import arrows, body, home, in_body, lines_in_body, near, outward, poses, seen, some, spots
+from .measure import hue, proportional, same_direction, same_place, same_turn
+from .seen import arrows, body, home, in_body, lines_in_body, outward, poses, seen, some
 
 FRONT, BACK = 2, 3  # of rerun's face_rendering
 GONE = 1e-3  # a scale at which nothing is to be seen
@@ -40,10 +40,10 @@ def scale_only(f, entity):
         assert np.array_equal(own, np.diag([own[0, 0]] * 3 + [1.0]))
 
 
-def size(f, entity) -> float:
+def size(f, entity, row: int = 0) -> float:
     """How large the craft's shape is drawn, view units: its frame's scale."""
     parent = "/".join(entity.split("/")[: 2 + entity.split("/").index("body")])
-    return float(np.linalg.norm(f.picture.pose(parent, 0)[:3, 0]))
+    return float(np.linalg.norm(f.picture.pose(parent, f.truth.steps[row])[:3, 0]))
 
 
 def facing(f, entity, row) -> np.ndarray:
@@ -62,7 +62,8 @@ def film(f, entity):
     for row in some(f):
         drawn = facing(f, entity, row)
         same_direction(drawn, normal[row], 0.05)  # a smooth mesh of a few hundred triangles
-        sunward = side * drawn @ -outward(f, entity)[row]
+        light = normal[row] if f.truth.round_planet else outward(f, entity)[row]  # there the film's own word counts
+        sunward = side * drawn @ -light
         assert word == ("yellow" if sunward > 0 else "blue"), f"the side towards the Sun is {word}"
         points = in_body(f, entity, "Mesh3D:vertex_positions", row)
         same_place(np.abs(points[:, :2]).max(), size(f, entity) * np.sqrt(0.5), size=100 * size(f, entity))
@@ -156,7 +157,7 @@ def panels(f, entity):
     middle(f, entity)
     points = parts(f, entity, 0)
     spread = np.ptp(points, axis=0)
-    assert np.argmax(spread) == (1 if f.truth.kind == "plasma-brake" else 0)
+    assert np.argmax(spread) == (1 if f.truth.kind in ("plasma-brake", "none") else 0)
 
 
 def nozzle(f, entity):
@@ -171,7 +172,7 @@ def tether(f, entity):
     """A tether hangs from the satellite along minus the normal of /attitude, as long as its frame."""
     for row in range(len(f.truth)):
         (line,) = lines_in_body(f, entity, row)
-        line = line / size(f, entity)
+        line = line / size(f, entity, row)
         same_place(line[:, :2], 0 * line[:, :2], size=10)
         assert line[0, 2] > -0.1
         same_place(line[-1, 2], np.array(-1.0), size=10)
@@ -180,7 +181,7 @@ def tether(f, entity):
 def tether_end(f, entity):
     """Its tip is at its lower end."""
     for row in some(f):
-        same_place(parts(f, entity, row)[0] / size(f, entity), np.array([0.0, 0.0, -1.0]), size=10)
+        same_place(parts(f, entity, row)[0] / size(f, entity, row), np.array([0.0, 0.0, -1.0]), size=10)
 
 
 def shown_while_on(f, entity):
@@ -218,21 +219,6 @@ def dot(f, entity):
         same_place(f.picture.place(entity, "Points3D:positions", row)[0], home(f, entity)[row])
 
 
-def thrust_arrow(f, entity):
-    """From the craft along /thrust; as long as the thrust in the system view, as its root in the close-up; one scale
-    throughout."""
-    origin, vector = arrows(f, entity)
-    same_place(origin, home(f, entity))
-    true = seen(f, entity, f.truth.thrust)
-    strength = np.linalg.norm(true, axis=1, keepdims=True)
-    if near(entity):
-        true = np.where(strength > 0, true / np.sqrt(np.where(strength > 0, strength, 1)), 0.0)
-    factor = proportional(vector, true)
-    longest = factor * np.linalg.norm(true, axis=1).max() / (1.0 if near(entity) else f.truth.reach)
-    low, high = (7.9, 8.1) if near(entity) else (0.15, 0.5)
-    assert not strength.any() or low < longest < high, f"the longest arrow is {longest:.3g} of the view"
-
-
 def still(f) -> np.ndarray:
     """Rows in which the craft hardly moves: slower than a 300th of the circular speed."""
     circular = np.sqrt(f.truth.mu / np.linalg.norm(f.truth.position, axis=1))
@@ -248,13 +234,6 @@ def velocity_arrow(f, entity):
     proportional(vector, true)
 
 
-def normal_arrow(f, entity):
-    """From the craft along /attitude/normal, always of the same length."""
-    origin, vector = arrows(f, entity)
-    same_place(origin, home(f, entity))
-    proportional(vector, seen(f, entity, f.truth.normal))
-
-
 def primer_arrow(f, entity):
     """From the craft along the primer vector; of runs without one, nothing."""
     primer = f.truth.environment.get("primer_direction")
@@ -266,16 +245,13 @@ def primer_arrow(f, entity):
     proportional(vector, seen(f, entity, primer))
 
 
-def at_tip(f, entity, arrow):
-    """A label a little beyond an arrow's tip."""
-    if not f.picture.moves(arrow, "Arrows3D:vectors"):
-        assert "Points3D:positions" not in f.picture.components(entity)
-        return
-    _, vectors = arrows(f, arrow)
-    for spot, vector, start in zip(spots(f, entity), vectors, home(f, entity), strict=True):
-        if not np.any(vector):
-            assert len(spot) == 0
-            continue
-        off = spot[0] - start
-        same_direction(off, vector, 10 * PURE if near(entity) else 0.01)
-        assert 1.0 < np.linalg.norm(off) / np.linalg.norm(vector) < 1.2
+def disc(f, entity):
+    """A faint disc across the normal as wide as the rim."""
+    flat(f, entity, 1e-4, (0.99, 1.01))
+    assert f.picture.color(entity, "Mesh3D:albedo_factor")[0][3] < 20
+
+
+def ballistic_name(f, entity):
+    """The craft's kind where nothing pushes it."""
+    assert f.picture.fixed(entity, "Points3D:labels")[0] in ("Spacecraft", "Solar sail", "E-sail", "Thruster")
+    assert not np.any(f.truth.thrust)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -13,6 +14,7 @@ from .plots import UNITS, in_range, unit_of
 
 MILLI_AU = AU / 1000
 BESIDE = 1.004  # the nominal path is drawn so much large: on the craft's own trail it would tear
+PATHS = 40  # of an ensemble that are drawn
 LEVELS = 2  # bands of percentiles on each side of the median
 
 
@@ -70,14 +72,14 @@ def color_of(f, name) -> str:
     """The word that the description has for an ensemble's colour."""
     title = f.truth.recording[f"/ensemble/{name}/facts"]["name"][0]
     text = f.picture.fixed("/about", "TextDocument:text")[0]
-    (line,) = [line for line in text.splitlines() if f"**: {title} (" in line]
+    (line,) = [line for line in text.splitlines() if line.startswith("| **") and line.endswith(f"| {title} |")]
     return line.split("**")[1]
 
 
 def flights(f, entity, name):
-    """Paths of the flights kept, up to each row."""
+    """Paths of the first forty flights kept, up to each row."""
     e = ensemble(f, name)
-    joined(f, entity, (e.steps, e.kept / f.truth.length), color_of(f, name))
+    joined(f, entity, (e.steps, e.kept[:, :PATHS] / f.truth.length), color_of(f, name))
 
 
 def flights_now(f, entity, name):
@@ -131,36 +133,6 @@ def cylindrical_of(e, row, places) -> np.ndarray:
     return np.stack([np.hypot(local[:, 0], local[:, 1]), (angle + np.pi) % (2 * np.pi) - np.pi, local[:, 2]], 1)
 
 
-def percentile_line(e, level) -> np.ndarray:
-    """(n, 3) m: a percentile of the distance, at the median azimuth."""
-    azimuth, radius = e.table["azimuth_rad"][:, len(e.levels) // 2], e.table["radius_m"][:, level]
-    local = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), 0 * radius], -1)
-    first = e.axes.T  # azimuth counts from the nominal flight's start
-    return local @ first.T
-
-
-def tube_band(f, entity, name, number):
-    """The band between two percentiles of the distance."""
-    e, k = ensemble(f, name), int(number)
-    points = f.picture.place(entity, "Mesh3D:vertex_positions", 0)
-    low, high = percentile_line(e, k), percentile_line(e, len(e.levels) - 1 - k)
-    same_place(points, np.concatenate([low, high]), f.truth.length)
-    n = len(low)
-    for face in f.picture.fixed(entity, "Mesh3D:triangle_indices").astype(int):
-        assert 0 < (face >= n).sum() < 3, "a face that does not reach across"
-        assert np.ptp(face % n) == 1
-    assert hue(f.picture.color(entity, "Mesh3D:albedo_factor")[0]) == color_of(f, name)
-
-
-def tube_lines(f, entity, name, kind):
-    """The median of the distance, or its outermost percentiles."""
-    e = ensemble(f, name)
-    levels = {"median": [len(e.levels) // 2], "edges": [0, len(e.levels) - 1]}[kind]
-    for line, level in zip(f.picture.line(entity, 0), levels, strict=True):
-        same_place(line, percentile_line(e, level), f.truth.length)
-    assert hue(f.picture.color(entity, "LineStrips3D:colors")[0]) == color_of(f, name)
-
-
 def first_ensemble(f) -> Ensemble:
     """All ensembles have the same nominal flight."""
     names = [n.split("/")[2] for n in f.picture.entities if n.startswith("/ensemble/") and n.count("/") == 2]
@@ -189,7 +161,7 @@ def nominal_name(f, entity):
     _, drawn = f.picture.rows(entity, "Points3D:positions")
     off = np.array(drawn)[:, 0] * f.truth.length - e.nominal
     assert np.degrees(np.arccos(np.clip(np.sum(unit(off) * unit(e.nominal), 1), -1, 1))).max() < 0.1
-    assert f.picture.fixed(entity, "Points3D:labels") == ["nominal"]
+    assert f.picture.fixed(entity, "Points3D:labels") == ["calm flight"]
 
 
 def nominal_of(e, key):
@@ -321,14 +293,44 @@ def buffer(value) -> np.ndarray:
 
 
 def histogram(f, entity, name):
-    """Per cent of the flights over their distance from the nominal one."""
+    """Per cent of the flights over their distance from the calm one, in sixteen bins from nothing to the farthest; the
+    ensembles' bars stand side by side in each."""
     e = ensemble(f, name)
     (view,) = [view for view in f.picture.views if view.shows(entity)]
-    assert view.unit == "% over 10⁻³ au"
+    assert view.name == "Flights [%] by distance from the calm flight [0.001 au]"
     edges = np.ravel(e.facts["histogram_edges_m"]) / MILLI_AU
-    same_number(buffer(f.picture.fixed(entity, "BarChart:abscissa")), (edges[1:] + edges[:-1]) / 2)
-    assert (np.ravel(f.picture.fixed(entity, "BarChart:widths")) <= np.diff(edges) * (1 + 1e-6)).all()
+    centres = buffer(f.picture.fixed(entity, "BarChart:abscissa"))
+    wide = np.ravel(f.picture.fixed(entity, "BarChart:widths"))
+    step = np.diff(centres).mean()
+    others = [n for n in f.picture.entities if n.startswith("/flights/")]
+    first = min(buffer(f.picture.fixed(other, "BarChart:abscissa"))[0] for other in others)
+    last = max(buffer(f.picture.fixed(other, "BarChart:abscissa"))[0] for other in others)
+    assert last - first + wide.max() <= step * 1.001, "bars of two bins overlap"
+    taken = sorted((buffer(f.picture.fixed(other, "BarChart:abscissa"))[0]) for other in others)
+    assert all(b - a >= wide.max() * 0.999 for a, b in pairwise(taken)), "bars hide each other"
+    bins = step * np.arange(len(centres) + 1)
+    assert np.all((centres > bins[:-1]) & (centres < bins[1:]))
+    own = 0.5 * (edges[1:] + edges[:-1])
+    place = np.clip(np.floor(own / step + 1e-6).astype(int), 0, len(centres) - 1)
     steps, charts = f.picture.rows(entity, "BarChart:values")
-    assert np.array_equal(steps, e.steps)
-    same_number(np.array([buffer(chart) for chart in charts]), 100 * e.table["histogram"])
+    rows = np.searchsorted(e.steps, steps)
+    shares = np.stack([e.table["histogram"][rows][:, place == b].sum(1) for b in range(len(centres))], 1)
+    same_number(np.array([buffer(chart) for chart in charts]), 100 * shares)
+    assert np.allclose(100 * shares.sum(1), 100.0)
     assert hue(f.picture.color(entity, "BarChart:color")[0]) == color_of(f, name)
+
+
+def widest_name(f, entity):
+    """Names the widest ensemble, inwards of its mean, once that is a twentieth of the reach off the calm flight."""
+    (text,) = f.picture.fixed(entity, "Points3D:labels")
+    names = [n.split("/")[2] for n in f.picture.entities if n.startswith("/ensemble/") and n.count("/") == 2]
+    widths = {n: np.sqrt(ensemble(f, n).covariance[-1, 0, 0]) for n in names}
+    name = max(widths, key=widths.get)
+    e = ensemble(f, name)
+    assert text == f"flights with {e.facts['name'][0]}"
+    away = np.linalg.norm(e.mean - e.nominal, axis=1) > 0.05 * np.linalg.norm(e.nominal, axis=1).max()
+    for step, mean, far in zip(e.steps, e.mean, away, strict=True):
+        spot = f.picture.place(entity, "Points3D:positions", step)
+        assert len(spot) == far
+        if far:
+            assert np.linalg.norm(spot[0] - 0.86 * mean / f.truth.length) < 1e-5

@@ -30,6 +30,27 @@ class Flight:
     def picture(self) -> Picture:
         return Picture(self.path)
 
+    def spreads(self, time) -> list[tuple[float, str]]:
+        """Standard deviation of the distance from the Sun, au, of each ensemble at a time, s, with its name."""
+        found = []
+        for entity in self.picture.entities:
+            if entity.startswith("/ensemble/") and entity.count("/") == 2:
+                table = self.truth.recording[entity]
+                sigma = np.sqrt(np.maximum(table["covariance_m2"].reshape(-1, 3, 3)[:, 0, 0], 0.0)) / AU
+                found.append((float(np.interp(time, table["time_s"], sigma)), entity))
+        return found
+
+    @property
+    def ensembles(self) -> dict[str, np.ndarray]:
+        """Percentiles of the distance, m, by the name of each ensemble; of nominal flights where they are not known."""
+        found = {}
+        for entity in self.picture.entities:
+            if entity.startswith("/ensemble/") and entity.count("/") == 2:
+                table = self.truth.recording[entity]
+                own = np.linalg.norm(table["nominal_position_m"], axis=1)
+                found[entity] = table.get("radius_m", own)
+        return found
+
     @cached_property
     def truth(self) -> Truth:
         return Truth(sailviz.read(self.path), slowed=self.name in SLOWED)
@@ -100,6 +121,16 @@ def own_thruster():
     return trajectory(time, position, velocity, thrust=thrust, mu=MU_EARTH, epoch="2027-09-10T03:00:00")
 
 
+def own_film():
+    """A sail round the Earth, which tumbles in her shadow and out of it."""
+    time = DAY * np.linspace(0, 0.3, 81)
+    position, velocity = ellipse(time, MU_EARTH, EARTH + 1200e3, 0.02, 0.9)
+    normal = tumbling(len(time), 3, 0.4)
+    thrust = 4e-5 * normal * (1 + 0.3 * np.sin(time / 900.0))[:, None]
+    options = {"mu": MU_EARTH, "epoch": "2027-09-10T03:00:00", "device": "solar-sail", "side": 9.0}
+    return trajectory(time, position, velocity, normal=normal, thrust=thrust, **options)
+
+
 def own_point():
     """A dust grain round a body that is a point, without a date, going round sixty times: drawn slowed."""
     time = np.linspace(0, 60 * 2 * np.pi * np.sqrt(1500.0**3 / 5.0), 27)
@@ -120,6 +151,8 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run]] = {
     "spiral": scene("spirals/optical-sail", propagation__outputs=161),
     "approximations": scene("spirals/first-order", propagation__outputs=101),
     "transfer": scene("transfers/mars-rendezvous-2031", propagation__outputs=49),
+    "primer": scene("transfers/ideal-law-real-film", propagation__outputs=41),
+    "thruster": scene("spirals/radial-escape", propagation__outputs=61),
     "orbits": scene("transfers/earth-mercury-orbits", propagation__outputs=121),
     "brake": scene("deorbit/gravity-gradient", propagation__duration_d=0.45, propagation__output_interval_min=7),
     "decay": scene(
@@ -136,6 +169,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run]] = {
     "light": scene("wind/flickering-sun", **SMALL),
     "own sail": own_sail,
     "own thruster": own_thruster,
+    "own film": own_film,
     "own point": own_point,
 }
 SLOWED = ("decay", "drag", "own point")

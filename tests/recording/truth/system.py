@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from .facts import planet_ellipse, planet_place, unit
+from .facts import planet_ellipse, unit
 from .measure import hue, on_ring, same_angle, same_direction, same_place
 from .seen import poses, some, spots, strips, texts
 
-TARGET = 1.006  # a target is drawn so much large: on the trail it would tear
-HIGH, BETWEEN, LOW = (100, 190, 255), (226, 206, 196), (255, 112, 67)  # of a descent: start, three quarters, ground
+TARGET = 1.004  # a target is drawn so much large: on the trail it would tear
 STRAYS = 2e-3  # of the distance: what a curve between rows may stray from the orbit of its last row
 PLANET_HUES = {
     "Mercury": "grey",
@@ -64,9 +63,11 @@ def ecliptic(f, entity):
 
 
 def sun_line(f, entity):
-    """From the centre to the craft."""
+    """From beside the Sun to the craft."""
     line = strips(f, entity)
-    assert not line[:, 0].any()
+    off = np.linalg.norm(line[:, 0], axis=1)
+    assert np.ptp(off) < 1e-6 * off.max() < 0.1 * f.truth.reach
+    same_direction(line[:, 0], f.truth.place, 1e-3)
     same_place(line[:, 1], f.truth.place, f.truth.length)
 
 
@@ -75,23 +76,6 @@ def height_line(f, entity):
     line = strips(f, entity)
     same_place(line[:, 0], f.truth.place * [1.0, 1.0, 0.0], f.truth.length, f.truth.reach)
     same_place(line[:, 1], f.truth.place, f.truth.length)
-
-
-def ramp(f, rows, factor=1.0) -> np.ndarray:
-    """The colour (n, 3) of rows of a descent, by altitude of the semi-major axis."""
-    start = np.linalg.norm(f.truth.position[0]) - f.truth.radius
-    share = (f.truth.elements["semi_major_axis_m"][rows] - f.truth.radius) / start
-    down = np.sqrt(np.clip(1 - share, 0, 1))
-    stops = np.array([HIGH, BETWEEN, LOW], float)
-    return factor * np.stack([np.interp(down, [0, 0.5, 1], stops[:, k]) for k in range(3)], 1)
-
-
-def ramped(f, entity, component="LineStrips3D:colors", factor=1.0):
-    """Blue at the first altitude, pale at three quarters of it, orange on the ground."""
-    steps, colors = f.picture.rows(entity, component)
-    packed = np.array([color[0] for color in colors], np.uint32)
-    drawn = np.stack([(packed >> shift) & 255 for shift in (24, 16, 8)], -1).astype(float)
-    assert np.abs(drawn - ramp(f, steps, factor)).max() < 1.5
 
 
 def trail(f, entity):
@@ -113,11 +97,8 @@ def trail(f, entity):
             between_rows(f, between, done, step)
         done = step
     assert done == f.truth.steps[-1], "the trail ends before the run"
-    if f.truth.round_planet:
-        ramped(f, entity)
-    else:
-        word = hue(f.picture.color(entity, "LineStrips3D:colors")[0])
-        assert word in ("cyan", "blue")
+    word = hue(f.picture.color(entity, "LineStrips3D:colors")[0])
+    assert word in ("cyan", "blue")
 
 
 def between_rows(f, points, first, last):
@@ -147,8 +128,6 @@ def osculating(f, entity):
     for step in steps:
         for line in f.picture.line(entity, step):
             on_ring(line, f.truth.ring(step), f.truth.length, 2e-6)
-    if f.truth.round_planet:
-        ramped(f, entity)
 
 
 def ladder(f, entity):
@@ -159,8 +138,6 @@ def ladder(f, entity):
         on_ring(line, f.truth.ring(step), f.truth.length, 2e-6)
     assert steps[0] == 0
     assert len(steps) > 8
-    if f.truth.round_planet:
-        ramped(f, entity, factor=1.0 if "/plane/" in entity else 0.55)
 
 
 def craft_name(f, entity):
@@ -209,19 +186,6 @@ def all_round(line):
     assert abs(abs(angle[-1] - angle[0]) - 2 * np.pi) < 1e-3
 
 
-def planet_body(f, entity, name):
-    """Where the planet is, from its mean elements, in its colour."""
-    drawn = np.array([spot[0] for spot in spots(f, entity)])
-    same_place(drawn, planet_place(name, f.truth.seconds), f.truth.length)
-    assert hue(f.picture.color(entity, "Points3D:colors")[0]) == PLANET_HUES[name]
-
-
-def planet_name(f, entity, name):
-    """Its name where it is, in its colour."""
-    planet_body(f, entity, name)
-    assert set(texts(f, entity)) == {name}
-
-
 def column_place(f, entity, name):
     """Where another answer says that the craft is."""
     table = f.truth.recording["/approximation"]
@@ -234,7 +198,7 @@ def column_place(f, entity, name):
 
 def reference(f, entity, name):
     """A curve of the design: the circle or track to be held, the orbits departed from, aimed at and reached, and what
-    other answers say. A target is pink and drawn 0.6 % large."""
+    other answers say. A target is pink and drawn 0.4 % large."""
     (line,) = f.picture.line(entity, 0)
     start, word = f.truth.resolved.get("start", {}), hue(f.picture.color(entity, "LineStrips3D:colors")[0])
     if name == "designed_orbit":
@@ -250,7 +214,8 @@ def reference(f, entity, name):
         if target["planet"]:
             ring = conic(target["planet"].capitalize(), start_seconds(f))
         else:
-            ring = ring_of(*(target[key] for key in names))
+            shape = {key: target[key] or 0.0 for key in names}
+            ring = ring_of(*(shape | {"semi_major_axis": target["radius"] or target["semi_major_axis"]}).values())
         on_ring(line / TARGET, ring, f.truth.length)
     elif name == "reached":
         assert word == "cyan"

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache, partial
 
-from . import arrival, close_up, craft, earth, ensembles, plots, system
+from . import arrival, close_up, craft, earth, ensembles, landmarks, low, now, plots, push, system
 
 INERTIAL = "inertial, carried along the orbit where a run is slowed"
 NEAR = "orbital: radial, transverse, normal; of a tether transverse, normal, up"
@@ -40,56 +40,78 @@ class Claim:
 ARROW, LINE, POINT, MESH, MOVE = "Arrows3D", "LineStrips3D", "Points3D", "Mesh3D", "Transform3D"
 SPLAT, CURVE = "GaussianSplats3D", "Scalars SeriesLines"
 
+
+def of_place(f, entity):
+    """A frame that moves with the craft, or in a low orbit a dot where it is."""
+    (craft.place_only if f.picture.moves(entity, "Transform3D:translation") else low.craft_dot)(f, entity)
+
+
+def orbit_of(f, entity):
+    """The orbit of the moment, of a low one in the colour of its altitude."""
+    (low.orbit if "/world/tail" in f.picture.entities else system.osculating)(f, entity)
+
+
+def name_of_craft(f, entity):
+    """Its kind in words: over it in a low orbit, below it where nothing pushes."""
+    (low.craft_dot_name if "/world/tail" in f.picture.entities else craft.ballistic_name)(f, entity)
+
+
 SYSTEM = (
     Claim("/world", "ViewCoordinates", "right-handed, z up", INERTIAL, "1", system.right_handed),
     Claim("/world/stars", f"{POINT} {MOVE}", "nothing: a backdrop", INERTIAL, "far", system.backdrop),
     Claim("/world/sun", MOVE, "nothing: a size", INERTIAL, "1", craft.scale_only),
-    Claim("/world/sun/ball", MESH, "the centre", INERTIAL, "0.035 S", system.sun_ball),
+    Claim("/world/sun/ball", MESH, "the centre", INERTIAL, "0.036 S", system.sun_ball),
     Claim(
         "/world/sun/glow",
         SPLAT,
         "the centre",
         INERTIAL,
-        "0.035 S",
+        "0.036 S",
         partial(system.in_centre, component="GaussianSplats3D:centers"),
     ),
     Claim("/world/sun/name", POINT, "the Sun's name", INERTIAL, "1", system.sun_name),
     Claim("/world/center", POINT, "the centre", INERTIAL, "1", system.in_centre),
-    Claim("/world/ecliptic", f"{MESH} {MOVE}", "z = 0", INERTIAL, "1.12 S", system.ecliptic),
+    Claim("/world/ecliptic", f"{MESH} {MOVE}", "z = 0", INERTIAL, "1.10 S", system.ecliptic),
     Claim("/world/sun_line", LINE, "/state position_m", INERTIAL, "1/L", system.sun_line),
     Claim("/world/height", LINE, "/state position_m", INERTIAL, "1/L", system.height_line),
     Claim("/world/trail/recent", LINE, "/state position_m", INERTIAL, "1/L", system.trail),
     Claim("/world/trail/past", LINE, "/state position_m", INERTIAL, "1/L", system.trail),
     Claim("/world/trail/future", LINE, "/state position_m", INERTIAL, "1/L", system.trail),
-    Claim("/world/orbit", f"{LINE} {MOVE}", "/state as an orbit", INERTIAL, "1/L", system.osculating),
+    Claim("/world/orbit", f"{LINE} {MOVE}", "/state as an orbit", INERTIAL, "1/L", orbit_of),
     Claim("/world/ladder", LINE, "/state as orbits", INERTIAL, "1/L", system.ladder),
     Claim("/world/planets/*/orbit", LINE, "mean elements", INERTIAL, "1/L", system.planet_orbit),
-    Claim("/world/planets/*/body", POINT, "mean elements", INERTIAL, "1/L", system.planet_body),
-    Claim("/world/names/*", POINT, "mean elements", INERTIAL, "1/L", system.planet_name),
+    Claim("/world/planets/*/body", POINT, "mean elements, or a circle", INERTIAL, "1/L", landmarks.planet_body),
+    Claim("/world/names/*", POINT, "mean elements, or a circle", INERTIAL, "1/L", landmarks.planet_name),
+    Claim("/world/names/orbits/*", POINT, "the ring's own line", INERTIAL, "1/L", landmarks.ring_name),
+    Claim("/world/marks", POINT, "/state, /events", INERTIAL, "1/L", landmarks.marks),
+    Claim("/world/marks/#", POINT, "/state, /events", INERTIAL, "1/L", landmarks.mark_name),
+    Claim("/world/pan", MOVE, "the time", INERTIAL, "1", landmarks.pan),
+    Claim("/world/fence/*", MESH, "/thrust acceleration_m_s2", INERTIAL, "one for all", push.standing),
+    Claim("/world/fence/*/edge", LINE, "the wall's top", INERTIAL, "1", push.edge),
+    Claim("/world/ghosts/*", f"{MESH} {LINE} InstancePoses3D", "/attitude normal", INERTIAL, "1/L", push.ghost),
     Claim("/world/references/*", LINE, "/scene, /state, /approximation", INERTIAL, "1/L", system.reference),
     Claim("/world/approximation/*/place", POINT, "/approximation", INERTIAL, "1/L", system.column_place),
     Claim("/world/approximation/*/name", POINT, "/approximation", INERTIAL, "1/L", system.column_place),
     Claim("/world/rtn", MOVE, "/state", INERTIAL, "1/L", craft.orbital_pose),
-    Claim("/world/rtn/name", POINT, "/scene craft_kind", INERTIAL, "1/L", system.craft_name),
     Claim("/world/season", MOVE, "right ascension of the Sun", INERTIAL, "1", system.season),
-    Claim("/world/craft", MOVE, "/state position_m", INERTIAL, "1/L", craft.place_only),
-    Claim("/world/craft/name", POINT, "/scene craft_kind", INERTIAL, "1/L", system.craft_name),
+    Claim("/world/craft", f"{MOVE} {POINT}", "/state position_m", INERTIAL, "1/L", of_place),
+    Claim("/world/craft/name", POINT, "/scene craft_kind", INERTIAL, "1/L", name_of_craft),
     Claim("/world/craft/body", MOVE, "/attitude quaternion", INERTIAL, "1", craft.body_pose),
-    *(
-        Claim(f"/world/craft/{name}", MOVE, "nothing: a size", INERTIAL, "one for all", craft.scale_only)
-        for name in ("thrust", "velocity", "primer")
-    ),
-    Claim("/world/craft/thrust/arrow", ARROW, "/thrust acceleration_m_s2", INERTIAL, "one for all", craft.thrust_arrow),
-    Claim("/world/craft/velocity/arrow", ARROW, "/state velocity_m_s", INERTIAL, "direction", craft.velocity_arrow),
-    Claim("/world/craft/primer/arrow", ARROW, "primer_direction", INERTIAL, "direction", craft.primer_arrow),
-    Claim(
-        "/world/craft/primer/name",
-        POINT,
-        "the arrow's tip",
-        INERTIAL,
-        "1.06",
-        partial(craft.at_tip, arrow="/world/craft/primer/arrow"),
-    ),
+    Claim("/world/craft/push", ARROW, "/thrust acceleration_m_s2", INERTIAL, "half and half", push.push_arrow),
+    Claim("/world/craft/push_name", POINT, "the arrow's tip", INERTIAL, "1", push.push_name),
+)
+
+LOW = (
+    Claim("/world/tail", LINE, "/state as an orbit", INERTIAL, "1.0004/L", low.tail),
+    Claim("/world/rtn/body", MOVE, "/attitude quaternion", INERTIAL, "1", craft.body_pose),
+    Claim("/world/rtn/drag", ARROW, "/thrust, air_drag_N", INERTIAL, "root, one for all", low.drag_arrows),
+    Claim("/world/rtn/drag_name", POINT, "/thrust, /environment", INERTIAL, "in words", low.drag_word),
+    Claim("/world/rtn/drag_sail", MOVE, "nothing: a size", INERTIAL, "1", lambda f, e: None),
+    Claim("/world/rtn/drag_sail/*", MESH, "/state velocity_m_s", INERTIAL, "1", low.drag_sail),
+    Claim("/world/rtn/flight", ARROW, "/state velocity_m_s", INERTIAL, "direction", low.flight),
+    Claim("/world/rtn/flight/name", POINT, "/state velocity_m_s", INERTIAL, "in words", low.flight_name),
+    Claim("/world/rtn/plumb", LINE, "/state position_m", INERTIAL, "1/L", low.plumb),
+    Claim("/world/rtn/ground", POINT, "/state position_m", INERTIAL, "1/L, in words", low.ground),
 )
 
 EARTH = (
@@ -115,7 +137,7 @@ def of_craft(top: str) -> list[Claim]:
     shape, tether = f"{top}/body/shape", f"{top}/body/tether"
     rows = (
         Claim(shape, MOVE, "nothing: a size", BODY, "told in the view's name", craft.scale_only),
-        Claim(f"{shape}/film_sun", MESH, "/attitude normal, the Sun", BODY, "1", craft.film),
+        Claim(f"{shape}/film_lit", MESH, "/attitude normal, the Sun", BODY, "1", craft.film),
         Claim(f"{shape}/film_dark", MESH, "/attitude normal, the Sun", BODY, "1", craft.film),
         Claim(f"{shape}/booms", MESH, "/attitude normal", BODY, "1", craft.booms),
         Claim(f"{shape}/vanes", MESH, "/attitude normal", BODY, "1", craft.vanes),
@@ -123,6 +145,7 @@ def of_craft(top: str) -> list[Claim]:
         Claim(f"{shape}/tethers", LINE, "/attitude normal", BODY, "1", craft.tethers),
         Claim(f"{shape}/rim", LINE, "/attitude normal", BODY, "1", craft.rim),
         Claim(f"{shape}/tips", f"{MESH} InstancePoses3D", "/attitude normal", BODY, "1", craft.at_tips),
+        Claim(f"{shape}/disc", MESH, "/attitude normal", BODY, "1", craft.disc),
         Claim(f"{shape}/hub", MESH, "/attitude normal", BODY, "1", craft.hub),
         Claim(f"{shape}/sheath", f"{SPLAT} {MOVE}", "/thrust on", BODY, "1", craft.sheath),
         Claim(f"{shape}/bus", MESH, "/attitude normal", BODY, "1", bus),
@@ -135,7 +158,12 @@ def of_craft(top: str) -> list[Claim]:
         Claim(f"{tether}/tip", POINT, "/attitude normal", BODY, "-1", craft.tether_end),
         Claim(f"{tether}/sheath", f"{SPLAT} {MOVE}", "/thrust on", BODY, "-1", craft.sheath),
     )
-    return [row for row in rows if top == "/sail" or not row.pattern.endswith(("/seams", "/tips"))]
+    near = top != "/world/craft"
+    rows = [row for row in rows if near or not row.pattern.endswith(("/seams", "/tips"))]
+    if top != "/world/rtn":
+        return [row for row in rows if not row.pattern.startswith(tether)]
+    wheel = ("/tethers", "/rim", "/tips", "/hub", "/disc", "/dot", "shape/sheath")  # no electric sail flies so low
+    return [row for row in rows if not row.pattern.endswith(wheel)]
 
 
 def bus(f, entity):
@@ -147,77 +175,60 @@ CLOSE_UP = (
     Claim("/sail", "ViewCoordinates", "right-handed, z up", NEAR, "1", system.right_handed),
     Claim("/sail/stars", POINT, "nothing: a backdrop", NEAR, "far", system.backdrop),
     Claim("/sail/body", MOVE, "/attitude quaternion", NEAR, "1", craft.body_pose),
-    Claim("/sail/flow", ARROW, "/state position_m", NEAR, "direction", close_up.flow),
-    Claim("/sail/flow/name", POINT, "/scene craft_kind", NEAR, "1", close_up.flow_name),
+    Claim("/sail/flow", ARROW, "/state position_m, /attitude normal", NEAR, "direction", close_up.flow),
+    Claim("/sail/mirrored", ARROW, "/state position_m, /attitude normal", NEAR, "direction", close_up.mirrored),
+    Claim("/sail/flow_name", POINT, "/scene craft_kind", NEAR, "1", close_up.flow_name),
     Claim("/sail/radial", LINE, "/state position_m", NEAR, "direction", close_up.radial),
-    Claim("/sail/normal", ARROW, "/attitude normal", NEAR, "direction", craft.normal_arrow),
+    Claim("/sail/normal", ARROW, "/attitude normal", NEAR, "-1", close_up.sunward_normal),
+    Claim("/sail/push", ARROW, "/thrust acceleration_m_s2", NEAR, "7.5 and a root", push.close_push),
+    Claim("/sail/push_name", POINT, "/thrust magnitude_m_s2", NEAR, "in words", close_up.push_word),
     Claim("/sail/velocity", ARROW, "/state velocity_m_s", NEAR, "direction", craft.velocity_arrow),
     Claim("/sail/primer", ARROW, "primer_direction", NEAR, "direction", craft.primer_arrow),
     *(
-        Claim(f"/sail/{name}/name", POINT, "the arrow's tip", NEAR, "1", partial(craft.at_tip, arrow=f"/sail/{name}"))
-        for name in ("normal", "velocity", "primer")
+        Claim(
+            f"/sail/{name}_name", POINT, "the arrow's tip", NEAR, "1", partial(close_up.beside, arrow=f"/sail/{name}")
+        )
+        for name in ("velocity", "primer")
     ),
-    Claim("/sail/force", MOVE, "nothing: a size", NEAR, "one for all", craft.scale_only),
-    Claim("/sail/force/arrow", ARROW, "/thrust acceleration_m_s2", NEAR, "root, one for all", craft.thrust_arrow),
-    Claim("/sail/force_name", POINT, "/thrust, plasma_force_N_m", NEAR, "in words", close_up.force_word),
-    Claim("/sail/pitch/arc", LINE, "/attitude pitch_rad", NEAR, "1", close_up.pitch_arc),
-    Claim("/sail/pitch/fan", MESH, "/attitude pitch_rad", NEAR, "1", close_up.pitch_fan),
-    Claim("/sail/pitch/name", POINT, "/attitude pitch_rad", NEAR, "deg", partial(close_up.angle_word, name="pitch")),
-    Claim("/sail/cone", LINE, "/attitude cone_rad", NEAR, "1", close_up.cone_arc),
-    Claim("/sail/clock/circle", LINE, "/attitude normal", NEAR, "1", close_up.clock_circle),
+    Claim("/sail/angle/arc", LINE, "/attitude pitch_rad", NEAR, "-1", close_up.angle_arc),
+    Claim("/sail/angle/fan", MESH, "/attitude pitch_rad", NEAR, "-1", close_up.angle_fan),
+    Claim("/sail/angle/name", POINT, "/attitude pitch_rad", NEAR, "in words", close_up.angle_word),
+    Claim("/sail/clock/circle", LINE, "/attitude pitch_rad, normal", NEAR, "1", close_up.clock_circle),
     Claim("/sail/clock/spokes", LINE, "/attitude clock_rad, normal", NEAR, "1", close_up.clock_spokes),
-    Claim("/sail/clock/arc", LINE, "/attitude clock_rad, normal", NEAR, "1", close_up.clock_arc),
-    Claim("/sail/clock/name", POINT, "/attitude clock_rad", NEAR, "deg", partial(close_up.angle_word, name="clock")),
+    Claim("/sail/clock/arc", LINE, "/attitude clock_rad", NEAR, "1", close_up.clock_arc),
+    Claim("/sail/clock/name", POINT, "/attitude clock_rad", NEAR, "in words", close_up.clock_word),
 )
 
-TETHER = (
-    Claim("/sail/vertical", LINE, "/state position_m", NEAR, "-1", earth.upright),
-    Claim("/sail/body/force", MOVE, "nothing: a size", NEAR, "one for all", lambda f, e: None),
-    Claim(
-        "/sail/body/force/arrows", f"{ARROW} {MOVE}", "/thrust across the tether", NEAR, "root", close_up.drag_arrows
-    ),
-    Claim("/sail/body/tip_name", POINT, "tether length, /attitude normal", NEAR, "m, deg", close_up.tip_word),
-    Claim("/sail/tether_name", POINT, "tether voltage, current, power", NEAR, "V, mA, W", close_up.tether_word),
-    Claim("/sail/motion", MOVE, "/state velocity_m_s", NEAR, "direction", close_up.motion_turn),
-    Claim("/sail/motion/velocity", ARROW, "/state velocity_m_s", NEAR, "direction", close_up.flight_arrow),
-    Claim("/sail/motion/flow", ARROW, "/state velocity_m_s", NEAR, "-1", close_up.ram_flow),
-    Claim(
-        "/sail/motion/velocity_name",
-        POINT,
-        "/state velocity_m_s",
-        NEAR,
-        "1",
-        partial(close_up.ahead_name, words="velocity"),
-    ),
-    Claim(
-        "/sail/motion/flow_name",
-        POINT,
-        "/state velocity_m_s",
-        NEAR,
-        "1",
-        partial(close_up.ahead_name, words="ion ram flow"),
-    ),
-    Claim("/sail/planet", MOVE, "/state position_m", NEAR, "-1", earth.below),
-    Claim("/sail/planet/shape", MOVE, "nothing: a size", NEAR, "1", craft.scale_only),
-    Claim("/sail/planet/shape/air/shell#", MESH, "nothing: air", NEAR, "1", lambda f, e, number: earth.air(f, e)),
-    Claim("/sail/planet/shape/globe", MOVE, "sub-satellite point", NEAR, "1", lambda f, e: None),
-    Claim("/sail/planet/shape/globe/ball", "Asset3D", "sub-satellite point, sunlit", NEAR, "1", earth.globe),
-    Claim("/sail/sun", MOVE, "the Sun's direction", NEAR, "1", earth.light_turn),
-    Claim("/sail/sun/light", f"{ARROW} {MOVE}", "the Sun's direction, sunlit", NEAR, "-1", earth.light_arrow),
-    Claim("/sail/sun/name", POINT, "the Sun's direction, sunlit", NEAR, "1", earth.light_name),
-)
+SWUNG = "Measurements Scalars SeriesLines"
+NAMED = {
+    "distance": ("/state, /elements", plots.distance),
+    "altitude": ("/state, /elements, /environment", plots.altitude),
+    "speed": ("/state velocity_m_s", plots.speed),
+    "height": ("/state position_m", plots.height),
+    "earth": ("/state, mean elements", plots.from_earth),
+    "inclination": ("/elements inclination_rad", plots.element),
+    "eccentricity": ("/elements eccentricity", plots.element),
+    "angle": ("/attitude pitch_rad, cone_rad", plots.angles),
+    "clock": ("/attitude clock_rad", plots.clock),
+    "push": ("/thrust magnitude_m_s2", plots.thrust),
+    "approximation": ("/approximation", plots.off_by),
+}
+
+
+def of_plot(f, entity, key, *_):
+    """A band or its mean."""
+    (NAMED[key][1] if key in NAMED else plots.acting)(f, entity, key)
+
 
 CURVES = (
-    Claim("/plots/distance", CURVE, "/state, /elements", "-", "title's unit", plots.distance),
-    Claim("/plots/altitude", CURVE, "/state, /elements, /environment", "-", "title's unit", plots.altitude),
-    Claim("/plots/inclination", CURVE, "/elements inclination_rad", "-", "title's unit", plots.element),
-    Claim("/plots/eccentricity", CURVE, "/elements eccentricity", "-", "title's unit", plots.element),
-    Claim("/plots/angles", CURVE, "/attitude pitch_rad, cone_rad", "-", "title's unit", plots.angles),
-    Claim("/plots/clock", CURVE, "/attitude clock_rad", "-", "title's unit", plots.clock),
-    Claim("/plots/thrust", CURVE, "/thrust magnitude_m_s2", "-", "title's unit", plots.thrust),
-    Claim("/plots/approximation", CURVE, "/approximation", "-", "title's unit", plots.off_by),
+    *(Claim(f"/plots/{key}", CURVE, truth, "-", "title's unit", check) for key, (truth, check) in NAMED.items()),
     Claim("/plots/*", CURVE, "/environment", "-", "title's unit", plots.acting),
-    Claim("/phase/*", "StateChange StateConfiguration", "/thrust on, /environment", "-", "in words", plots.lane),
+    Claim("/plots/*/#/*", SWUNG, "as of its plot", "-", "title's unit", of_plot),
+    *(
+        Claim(f"/{lane}", "StateChange StateConfiguration", "/thrust on, /environment", "-", "in words", plots.lane)
+        for lane in ("push", "light", "force_law_valid", "warm")
+    ),
+    Claim("/now", "TextDocument", "every column", "-", "in words", now.line),
     Claim("/log", "TextLog", "/events", "-", "in words", plots.log),
     Claim("/about", "TextDocument", "/scene", "-", "in words", plots.about),
 )
@@ -227,18 +238,7 @@ ENSEMBLES = (
     Claim("/world/cloud/*/flights", LINE, "kept_position_m", INERTIAL, "1/L", ensembles.flights),
     Claim("/world/cloud/*/now", POINT, "kept_position_m", INERTIAL, "1/L", ensembles.flights_now),
     Claim("/world/cloud/*/ellipse", LINE, "mean_position_m, covariance_m2", INERTIAL, "1/L", ensembles.ellipses),
-    Claim("/world/cloud/*/tube/band#", MESH, "radius_m, azimuth_rad", INERTIAL, "1/L", ensembles.tube_band),
-    *(
-        Claim(
-            f"/world/cloud/*/tube/{kind}",
-            LINE,
-            "radius_m, azimuth_rad",
-            INERTIAL,
-            "1/L",
-            partial(ensembles.tube_lines, kind=kind),
-        )
-        for kind in ("median", "edges")
-    ),
+    Claim("/world/cloud_name", POINT, "mean_position_m", INERTIAL, "0.86/L", ensembles.widest_name),
     Claim("/world/nominal/path", LINE, "nominal_position_m", INERTIAL, "1.004/L", ensembles.nominal_path),
     Claim("/world/nominal/place", POINT, "nominal_position_m", INERTIAL, "1/L", ensembles.nominal_place),
     Claim("/world/nominal/name", POINT, "nominal_position_m", INERTIAL, "1/L", ensembles.nominal_name),
@@ -247,7 +247,7 @@ ENSEMBLES = (
     Claim("/plots/ensemble/*/*/band#", BAND, "percentiles", "less nominal", "title's unit", ensembles.band),
     Claim("/plots/ensemble/*/*/median", CURVE, "percentiles", "less nominal", "title's unit", ensembles.median),
     Claim("/plots/ensemble/*/*/one", CURVE, "one_*", "-", "title's unit", ensembles.one_flight),
-    Claim("/histogram/*", "BarChart", "histogram", "from nominal", "100, 1000/au", ensembles.histogram),
+    Claim("/flights/*", "BarChart", "histogram", "from nominal", "100, 1000/au", ensembles.histogram),
     Claim("/arrival/*/axes", "LineStrips2D", "their own numbers", "less nominal", "numbers", arrival.axes),
     Claim("/arrival/*/axes/names", "Points2D", "their own numbers", "less nominal", "1", arrival.axis_names),
     Claim("/arrival/*/axes/numbers", "Points2D", "their ticks", "less nominal", "deg, 1000/au", arrival.axis_numbers),
@@ -256,7 +256,8 @@ ENSEMBLES = (
     Claim("/arrival/*/*/sigma#", "LineStrips2D", "covariance_m2", "less nominal", "deg, 1000/au", arrival.sigma),
 )
 
-TABLE = (*SYSTEM, *EARTH, *of_craft("/world/craft"), *of_craft("/sail"), *CLOSE_UP, *TETHER, *CURVES, *ENSEMBLES)
+CRAFTS = (*of_craft("/world/craft"), *of_craft("/world/rtn"), *of_craft("/sail"))
+TABLE = (*SYSTEM, *EARTH, *LOW, *CRAFTS, *CLOSE_UP, *ENSEMBLES, *CURVES)
 NUMBERS = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/approximation", "/ensemble", "/events")
 NUMBERS = (*NUMBERS, "/scene", "/__properties", "/__checksums")  # what is not drawn: the truth itself
 

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from .craft import size
-from .flights import FLIGHTS, SLOWED
+from .flights import FLIGHTS
 from .picture import fits
 from .table import drawn
 
-SIZES = {"": 1.0, " million": 1e6, " billion": 1e9}
 SOMETIMES = ("/world/plane/shells", "/world/night", "/world/center")  # rules that not every run fills
+IN_SIGHT = 0.999  # of a view's half width and height
 
 
 @pytest.mark.parametrize("name", FLIGHTS)
@@ -23,78 +23,100 @@ def test_views_look_from_frames_that_exist_at_entities_that_exist(flights, name)
     for view in picture.views:
         assert any(fits(entity, f"{view.origin.rstrip('/')}/**") for entity in picture.entities), view.name
         for rule in (rule.removeprefix("+ ").replace("$origin", view.origin) for rule in view.contents):
-            if rule.startswith("- ") or rule.startswith(SOMETIMES) or "/tube/" in rule:
+            if rule.startswith("- ") or rule.startswith(SOMETIMES):
                 continue
             assert any(fits(entity, rule) for entity in picture.entities), f"{view.name}: nothing at {rule}"
 
 
 @pytest.mark.parametrize("name", FLIGHTS)
-def test_everything_drawn_is_in_a_view_but_far_planets_and_crowded_names(flights, name):
-    flight = flights(name)
-    for entity in drawn(flight.picture.entities):
-        if entity.startswith(("/plots", "/phase")) or any(view.shows(entity) for view in flight.picture.views):
+def test_everything_drawn_is_in_a_view_but_lanes_without_a_change(flights, name):
+    picture = flights(name).picture
+    for entity in drawn(picture.entities):
+        if any(view.shows(entity) for view in picture.views):
             continue
-        planet = re.match(r"/world/(?:planets|names)/(\w+)", entity)
-        assert planet or entity == "/world/sun/name", entity
-        if planet and entity.endswith("/orbit"):
-            (line,) = flight.picture.line(entity, 0)
-            assert np.linalg.norm(line, axis=1).max() > flight.truth.reach
+        assert "StateChange" in picture.archetypes(entity), entity
+        changes = len(picture.rows(entity, "StateChange:state")[0])
+        assert changes == 1 or changes > 40, entity
 
 
 @pytest.mark.parametrize("name", FLIGHTS)
-def test_the_names_of_views_tell_their_frames(flights, name):
-    origins = {view.name: view.origin for view in flights(name).picture.views if view.kind == "3D"}
-    first = [title for title in origins if title.startswith(("System", "Earth"))]
-    assert len(first) == 1
-    assert origins[first[0]] == ("/world/season" if "turning with the Sun" in first[0] else "/")
-    assert origins["Follow"] == "/world/rtn"
-    (near,) = [title for title in origins if "close-up" in title]
-    assert "(orbital frame" in near
-    assert origins[near] == "/sail"
+def test_views_stand_where_a_person_looks_for_them(flights, name):
+    picture, truth = flights(name).picture, flights(name).truth
+    names = [view.name for view in picture.views]
+    origins = {view.name: view.origin for view in picture.views if view.kind == "3D"}
+    assert truth.scene["title"] in names  # over the line of the moment
+    if "/world/tail" in picture.entities:
+        assert [origin for title, origin in origins.items() if title.startswith("Riding along")] == ["/world/rtn"]
+        assert origins["Where it is"] == ("/world/season" if "/world/season" in picture.entities else "/")
+    else:
+        assert origins["Flight"] == ("/world/pan" if "/world/pan" in picture.entities else "/")
+        assert origins["Riding along"] == "/world/rtn"
+        assert any("close up" in title and origin == "/sail" for title, origin in origins.items())
     assert all(origin == "/world/plane" for title, origin in origins.items() if title.startswith("Descent"))
 
 
 @pytest.mark.parametrize("name", FLIGHTS)
-def test_the_first_view_tells_how_much_larger_the_craft_is_and_how_much_slower(flights, name):
+def test_the_first_view_tells_how_much_longer_the_tether_is_drawn(flights, name):
     flight = flights(name)
     truth, picture = flight.truth, flight.picture
-    (title,) = [view.name for view in picture.views if view.name.startswith(("System", "Earth"))]
-    slowed = re.search(r"orbiting slowed (.*?) times", title)
-    assert (slowed is not None) == (name in SLOWED)
-    if slowed:
-        assert number(slowed.group(1)) == pytest.approx(truth.slower, rel=0.06)  # two digits
-    larger = re.search(r"×([\d.,]*\d(?: \w+illion)?)", title)
-    parts = {"solar-sail": "shape", "electric-sail": "shape", "plasma-brake": "tether"}
-    true = truth.scene.get("craft_side_m", truth.scene.get("craft_tether_length_m"))
-    assert (larger is not None) == (true is not None)
-    if larger:
-        drawn_size = size(flight, f"/world/craft/body/{parts[truth.kind]}")
-        assert number(larger.group(1)) == pytest.approx(drawn_size * truth.length / true, rel=0.06)
+    titles = [view.name for view in picture.views if view.name.startswith("Riding along")]
+    told = re.search(r"tether drawn about ([\d,]+) times too long", titles[0])
+    assert (told is not None) == (truth.kind == "plasma-brake")
+    if told:
+        lengths = [size(flight, "/world/rtn/body/tether", row) for row in range(len(truth))]
+        drawn_length = np.median(lengths) * truth.length / truth.scene["craft_tether_length_m"]
+        assert float(told.group(1).replace(",", "")) == pytest.approx(drawn_length, rel=0.06)
 
 
-def number(words: str) -> float:
-    """1.2 million, 370, 1,100."""
-    digits, word = re.fullmatch(r"([\d.,]+)( \w+)?", words).groups()
-    return float(digits.replace(",", "")) * SIZES[word or ""]
+@pytest.mark.parametrize("name", FLIGHTS)
+def test_the_whole_flight_and_its_push_are_in_sight_of_the_first_view_all_along(flights, name):
+    flight = flights(name)
+    if "/world/tail" in flight.picture.entities:
+        pytest.skip("a low orbit is seen from the craft")
+    (view,) = [view for view in flight.picture.views if view.name == "Flight"]
+    place = flight.truth.place / flight.truth.length
+    if "/world/craft/push" in flight.picture.entities:
+        arrows = [flight.picture.arrow("/world/craft/push", step)[1][0] for step in flight.truth.steps]
+        place = np.concatenate([place, place + arrows]) if len(arrows) < 400 else place
+    for step in flight.truth.steps[:: max(len(flight.truth) // 9, 1)]:
+        pose = flight.picture.pose(view.origin, step) if view.origin != "/" else np.eye(4)
+        local = (place - pose[:3, 3]) @ pose[:3, :3]
+        own = local if "/world/pan" not in flight.picture.entities else local[: len(flight.truth)]
+        seen = on_screen(own[: len(flight.truth)], view)
+        assert np.abs(seen).max() < IN_SIGHT, f"row {step}: {np.abs(seen).max():.3f} of the view"
+
+
+def on_screen(places, view, aspect=1005 / 576):
+    """(n, 2) of a view, -1 to 1; a viewer's field is as high as the distance."""
+    toward = (view.eye - view.target) / np.linalg.norm(view.eye - view.target)
+    right = np.cross(view.up, toward)
+    right /= np.linalg.norm(right)
+    off = places - view.eye
+    depth = -(off @ toward)
+    assert (depth > 0).all()
+    return np.stack([off @ right / aspect, off @ np.cross(toward, right)], -1) / (0.5 * depth[:, None])
 
 
 @pytest.mark.parametrize("name", FLIGHTS)
 def test_the_trail_has_the_past_behind_the_craft_and_the_future_ahead(flights, name):
     flight = flights(name)
+    if "/world/trail/recent" not in flight.picture.entities:
+        pytest.skip("rows lie far apart: the orbit of the moment is drawn")
     seen = 0
     for view in flight.picture.views:
         if view.kind != "3D" or view.origin == "/sail":
             continue
-        past, recent, future = (view.trails[f"/world/trail/{part}"] for part in ("past", "recent", "future"))
+        past, recent = (view.trails[f"/world/trail/{part}"] for part in ("past", "recent"))
         assert recent[1] == 0
-        assert -0.4 * flight.truth.duration < recent[0] < 0
+        assert -0.2 * flight.truth.duration < recent[0] < 0
         assert past[1] == recent[0]
-        if "/world/trail/past" in flight.picture.entities:
-            assert past[0] is None or past[0] < past[1]
-        assert future == "hidden" or future == (0, None)
+        assert past[0] is None or past[0] < past[1]
+        assert view.trails.get("/world/trail/future", (0, None)) == (0, None)
         flown = {path: ends for path, ends in view.trails.items() if path.endswith(("/flights", "/nominal/path"))}
         assert all(ends == (None, 0) for ends in flown.values())
-        assert view.trails["/world/ladder"] == view.trails["/world/plane/ladder"] == (None, None)
+        for part, ends in (("past", (None, 0)), ("future", (0, None))):
+            if f"/world/fence/{part}" in flight.picture.entities:
+                assert view.trails[f"/world/fence/{part}"] == view.trails[f"/world/fence/{part}/edge"] == ends
         seen += 1
     assert seen >= 3
 
@@ -104,7 +126,7 @@ def test_every_row_that_is_drawn_stands_at_its_own_time(flights, name):
     flight = flights(name)
     rows = {step: (step, *times) for step, *times in flight.picture.clocks["/state"]}
     for entity, clocks in flight.picture.clocks.items():
-        if entity not in ("/events", "/log"):
+        if entity not in ("/events", "/log") and not re.search(r"/\d+/(band|mean)$", entity):
             assert all(clock == rows[clock[0]] for clock in clocks), entity
     ns = np.array([rows[step][1] for step in flight.truth.steps])
     assert np.array_equal(ns, np.round(flight.truth.time * 1e9).astype(np.int64))
@@ -114,17 +136,30 @@ def test_every_row_that_is_drawn_stands_at_its_own_time(flights, name):
 def test_a_quantity_has_one_colour_in_space_and_in_its_plot(flights, name):
     picture = flights(name).picture
     pairs = {
-        ("/plots/thrust", 0): ("/world/craft/thrust/arrow", "Arrows3D:colors"),
-        ("/plots/angles", 0): ("/sail/pitch/arc", "LineStrips3D:colors"),
-        ("/plots/angles", 1): ("/sail/cone", "LineStrips3D:colors"),
+        ("/plots/push", 0): ("/world/craft/push", "Arrows3D:colors"),
+        ("/plots/angle", 0): ("/sail/angle/arc", "LineStrips3D:colors"),
+        ("/plots/angle", 1): ("/sail/push", "Arrows3D:colors"),
         ("/plots/clock", 0): ("/sail/clock/arc", "LineStrips3D:colors"),
+        ("/plots/speed", 0): ("/sail/velocity", "Arrows3D:colors"),
     }
     for (plot, k), (entity, component) in pairs.items():
         if plot in picture.entities and entity in picture.entities:
-            curve = picture.color(plot, "SeriesLines:colors")[k]
-            assert np.array_equal(curve, picture.color(entity, component)[0]), plot
-    words = {"/world/craft/thrust/arrow": "/sail/force/arrow", "/world/craft/velocity/arrow": "/sail/velocity"}
-    for far, near in words.items():
-        if near in picture.entities:
+            colors = picture.color(plot, "SeriesLines:colors")
+            if k < len(colors):
+                assert np.array_equal(colors[k], picture.color(entity, component)[0]), plot
+    for far, near in {"/world/craft/push": "/sail/push"}.items():
+        if near in picture.entities and far in picture.entities:
             same = [picture.color(entity, "Arrows3D:colors")[0] for entity in (far, near)]
             assert np.array_equal(*same)
+
+
+@pytest.mark.parametrize("name", FLIGHTS)
+def test_plots_vary_and_have_two_numbers_on_their_axis(flights, name):
+    for view in flights(name).picture.views:
+        if view.kind != "TimeSeries":
+            continue
+        low, high = view.range
+        step = 10.0 ** np.floor(np.log10(high - low))
+        steps = (step, step / 10)
+        counts = [np.floor(high / s + 1e-9) - np.ceil(low / s - 1e-9) + 1 for s in steps]
+        assert any(2 <= count <= 20 for count in counts), view.name

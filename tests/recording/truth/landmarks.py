@@ -1,0 +1,126 @@
+"""What stands round: marks at the start, the end and events, names of rings, planets with and without a date."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from .facts import AU, DAY, PLANETS, planet_place
+from .measure import hue, same_place
+from .seen import poses, spots, texts
+from .system import PLANET_HUES
+
+MU_SUN = 1.327_124_400_18e20
+NEAR = 0.12  # of a planet's distance, within which a flight without a date starts or ends at it
+
+
+def marks(f, entity):
+    """Dots where the flight starts and ends and where something happened."""
+    places = f.picture.place(entity, "Points3D:positions", 0)
+    true = f.truth.place / f.truth.length
+    same_place(places[0], true[0])
+    if len(places) > 1:
+        same_place(places[-1], true[-1])
+    for place in places[1:-1]:
+        assert np.linalg.norm(true - place, axis=1).min() < widest_step(f)
+
+
+def widest_step(f) -> float:
+    return float(np.linalg.norm(np.diff(f.truth.place, axis=0), axis=1).max() / f.truth.length)
+
+
+def mark_name(f, entity, number):
+    """Its words above it: start, an event of the recording with its day, or what the flight ends with."""
+    (text,) = f.picture.fixed(entity, "Points3D:labels")
+    place = f.picture.place(entity, "Points3D:positions", 0)[0]
+    dot = f.picture.place("/world/marks", "Points3D:positions", 0)[int(number)]
+    same_place(place[:2], dot[:2], size=1 + np.abs(dot).max())
+    assert 0 < place[2] - dot[2] < 0.4 * max(f.truth.reach, np.abs(dot).max())
+    if number == "0":
+        assert text == "start"
+        return
+    name, word, day = re.fullmatch(r"(.*), (day|hour) ([\d.]+)", text).groups()
+    duration = f.truth.time[-1] - f.truth.time[0]
+    when = float(day) * {"day": DAY, "hour": 3600.0}[word]
+    known = {event.name: event.time - f.truth.time[0] for event in f.truth.recording.events}
+    if name in known:
+        assert (
+            abs(when - known[name]) <= 0.51 * (DAY if word == "day" else 3600.0)
+            or abs(when - duration) < 0.03 * duration
+        )
+        return
+    assert name == "end" or name.startswith("reaches ")
+    assert abs(when - duration) <= 0.51 * (DAY if word == "day" else 3600.0)
+    if name.startswith("reaches the orbit of "):
+        reached(f, name.removeprefix("reaches the orbit of "))
+    elif name.startswith("reaches "):
+        planet = planet_place(name.removeprefix("reaches "), f.truth.seconds)[-1]
+        assert np.linalg.norm(planet - f.truth.position[-1]) < 0.03 * f.truth.reach * f.truth.length
+
+
+def reached(f, name):
+    """The last row's orbit has the size and the shape of the planet's, or of the circle that stands for it."""
+    a, e = (f.truth.elements[key][-1] for key in ("semi_major_axis_m", "eccentricity"))
+    values = PLANETS[name][0]
+    assert abs(a / AU - values[0]) < 0.03 * values[0]
+    assert min(abs(e - values[1]), e) < 0.03
+
+
+def ring_name(f, entity, name):
+    """On the ring that it names."""
+    (text,) = f.picture.fixed(entity, "Points3D:labels")
+    place = f.picture.place(entity, "Points3D:positions", 0)[0]
+    if name == "target":
+        lines = [
+            np.concatenate(f.picture.line(other, 0)) / 1.004
+            for other in f.picture.entities
+            if other.startswith("/world/references/")
+            and hue(f.picture.color(other, "LineStrips3D:colors")[0]) == "pink"
+        ]
+        assert text.startswith("orbit of") or text in ("target orbit", "designed orbit")
+        line = lines[0]
+    else:
+        assert text == f"orbit of {name}"
+        line = np.concatenate(f.picture.line(f"/world/planets/{name}/orbit", 0))
+    assert np.linalg.norm(line - place, axis=1).min() < 1e-4 * np.abs(line).max()
+
+
+def planet_body(f, entity, name):
+    """Where the planet is, from its mean elements; without a date on its circle at its own pace, where the craft starts
+    or where it ends; in its colour."""
+    drawn = np.array([spot[0] for spot in spots(f, entity)])
+    assert hue(f.picture.color(entity, "Points3D:colors")[0]) == PLANET_HUES[name]
+    if f.truth.seconds is not None:
+        same_place(drawn, planet_place(name, f.truth.seconds), f.truth.length)
+        return
+    a = np.linalg.norm(drawn, axis=1)
+    mean = PLANETS[name][0][0]
+    assert np.ptp(a) < 1e-5 * a.max()
+    assert abs(a[0] - mean) < 0.03 * mean
+    angle = np.unwrap(np.arctan2(drawn[:, 1], drawn[:, 0]))
+    rate = np.sqrt(MU_SUN / (a[0] * AU) ** 3)
+    assert np.abs(angle - angle[0] - rate * (f.truth.time - f.truth.time[0])).max() < 1e-3
+    ends = [row for row in (0, -1) if abs(np.linalg.norm(f.truth.position[row]) / AU - a[0]) < NEAR * a[0]]
+    assert ends
+    off = [abs(np.angle(np.exp(1j * (angle[row] - np.arctan2(*f.truth.position[row][1::-1]))))) for row in ends]
+    assert min(off) < 1e-4
+    (about,) = f.picture.fixed("/about", "TextDocument:text")
+    assert re.search(rf"\*No date is given: .*\b{name}\b", about)
+
+
+def planet_name(f, entity, name):
+    """Its name where it is, in its colour."""
+    planet_body(f, entity, name)
+    assert set(texts(f, entity)) == {name}
+
+
+def pan(f, entity):
+    """A frame that turns about z at an even rate, at most 200 degrees."""
+    pose = poses(f, entity)
+    angle = np.unwrap(np.arctan2(pose[:, 1, 0], pose[:, 0, 0]))
+    share = (f.truth.time - f.truth.time[0]) / (f.truth.time[-1] - f.truth.time[0])
+    assert np.abs(angle - angle[0] - (angle[-1] - angle[0]) * share).max() < 1e-5
+    assert abs(angle[0]) < 1e-6
+    assert abs(np.degrees(angle[-1])) < 200.1
+    assert not pose[:, :3, 3].any()

@@ -1,0 +1,216 @@
+"""The push along the way: the wall on the trail, the still copies of the sail, the arrow and its name."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .facts import unit
+from .measure import hue, same_direction, same_place, same_turn
+from .picture import turn
+from .seen import arrows, home
+
+RAMP = np.array([[74, 56, 140], [176, 60, 140], [255, 96, 72], [255, 176, 84]], float)  # weak to strong
+FOOT = 0.30  # brightness of a wall at the trail
+GHOSTS = 0.62  # of the craft's colours
+SHORTEST, LONGEST = 0.17, 0.34  # of the reach: arrows; on a ring
+ON_RING = 0.12, 0.24
+
+
+def strength(f) -> np.ndarray:
+    """(n,) m/s2."""
+    return np.linalg.norm(f.truth.thrust, axis=1)
+
+
+def walls(f, entity):
+    """Foot and top (k, 3) of the wall's corners, and their colours (k, 3), piece by piece with the row at which each
+    piece stands; of a ring one piece with row None."""
+    pieces = []
+    if f.picture.moves(entity, "Mesh3D:vertex_positions"):
+        steps, _ = f.picture.rows(entity, "Mesh3D:vertex_positions")
+        for step in steps:
+            pieces.append((step, *wall(f, entity, step)))
+    else:
+        pieces.append((None, *wall(f, entity, 0)))
+    return pieces
+
+
+def wall(f, entity, step):
+    points = f.picture.place(entity, "Mesh3D:vertex_positions", step)
+    colors = f.picture.color(entity, "Mesh3D:vertex_colors", step)[:, :3].astype(float)
+    half = len(points) // 2
+    faces = np.asarray(f.picture.at(entity, "Mesh3D:triangle_indices", step))
+    assert faces.max() == len(points) - 1
+    assert len(faces) == 2 * (half - 1)
+    return points[:half], points[half:], colors[:half], colors[half:]
+
+
+def standing(f, entity, part):
+    """The wall stands on the trail from row to row; its height goes with the push or its root, it leans as the thrust
+    does or, where that lies along the trail, on the orbit's normal, and its colour is the strength of the push."""
+    truth = f.truth
+    done, feet, tops, colors = 0, [], [], []
+    for step, foot, top, dark, bright in walls(f, entity):
+        last = len(truth) - 1 if step is None else step
+        rows = [int(np.argmin(np.linalg.norm(truth.place[done : last + 1] / truth.length - p, axis=1))) for p in foot]
+        rows = np.array(rows) + done
+        same_place(foot, truth.place[rows], truth.length)
+        assert np.all(np.diff(rows) > 0)
+        assert step is None or rows[0] == done
+        assert step is None or rows[-1] == step
+        assert np.abs(dark - FOOT * bright).max() < 1.5
+        feet.append(rows)
+        tops.append(top - foot)
+        colors.append(bright)
+        done = last
+    rows, height, color = np.concatenate(feet), np.concatenate(tops), np.concatenate(colors)
+    push = strength(f)
+    assert part == "ring" or rows[-1] == len(truth) - 1
+    leaning(f, rows, height)
+    tall = np.linalg.norm(height, axis=1)
+    share = push[rows] / push[rows].max()
+    expected = [share * tall.max(), np.sqrt(share) * tall.max()]
+    assert min(np.abs(tall - e).max() for e in expected) < 1e-5 * truth.reach
+    assert 0.05 * scene_reach(f) < tall.max() < 0.2 * scene_reach(f)
+    steady = np.ptp(push[rows]) <= 0.02 * push[rows].max()
+    told = np.full(len(rows), 0.72) if steady else share
+    ramp = np.stack([np.interp(told, np.linspace(0, 1, 4), RAMP[:, k]) for k in range(3)], 1)
+    assert np.abs(color - ramp).max() < 1.5
+
+
+def leaning(f, rows, height):
+    """Along the thrust all along, or along the normal of the orbit all along."""
+    pushed = strength(f)[rows] > 1e-6 * strength(f).max()
+    thrust = f.truth.carried(f.truth.thrust)[rows]
+    normal = unit(np.cross(f.truth.position, f.truth.velocity))[rows]
+    off = [np.linalg.norm(np.cross(unit(height[pushed]), unit(way[pushed])), axis=1).max() for way in (thrust, normal)]
+    assert min(off) < 1e-3
+    sense = (thrust, normal)[int(np.argmin(off))]
+    assert (np.sum(height[pushed] * sense[pushed], 1) > 0).all()
+
+
+def edge(f, entity, part):
+    """The top of the wall, piece by piece."""
+    for (step, _, top, _, _), line in zip(walls(f, entity.rsplit("/", 1)[0]), edges(f, entity), strict=True):
+        same_place(line, top)
+        assert step is None or step >= 0
+
+
+def edges(f, entity):
+    if not f.picture.moves(entity, "LineStrips3D:strips"):
+        return f.picture.line(entity, 0)
+    steps, _ = f.picture.rows(entity, "LineStrips3D:strips")
+    return [f.picture.line(entity, step)[0] for step in steps]
+
+
+def ghost(f, entity, name):
+    """Copies of the sail on the trail, each in the attitude that it had there, spread over the way."""
+    if name == "wheels":
+        return wheels(f, entity)
+    places = np.asarray(f.picture.fixed(entity, "InstancePoses3D:translations"), float)
+    turns = np.array([turn(q) for q in f.picture.fixed(entity, "InstancePoses3D:quaternions")])
+    scales = np.asarray(f.picture.fixed(entity, "InstancePoses3D:scales"), float)
+    rows = rows_of(f, places)
+    same_turn(turns, body_or_normal(f, turns, rows), 1e-3)
+    assert np.ptp(scales) < 1e-6 * scales.max()
+    assert 0.03 * f.truth.reach < scales.max() < 0.12 * f.truth.reach
+    word = hue(f.picture.color(entity, "Mesh3D:albedo_factor")[0])
+    if name in ("lit", "dark"):
+        assert word == {"lit": "yellow", "dark": "blue"}[name]
+        assert int(f.picture.fixed(entity, "Mesh3D:face_rendering")[0]) == {"lit": 3, "dark": 2}[name]
+    return None
+
+
+def body_or_normal(f, turns, rows):
+    """The true axes where they are drawn; about its normal a wheel or a square may be turned as it likes."""
+    normal = f.truth.carried(f.truth.normal)[rows]
+    x = turns[..., 0] - np.sum(turns[..., 0] * normal, 1, keepdims=True) * normal
+    x = unit(x)
+    return np.stack([x, np.cross(normal, x), normal], -1)
+
+
+def rows_of(f, places) -> np.ndarray:
+    """Rows whose places these are, in order, no two the same."""
+    drawn = f.truth.place / f.truth.length
+    rows = np.array([int(np.argmin(np.linalg.norm(drawn - place, axis=1))) for place in places])
+    same_place(places, f.truth.place[rows], f.truth.length)
+    assert np.all(np.diff(rows) > 0)
+    assert len(rows) >= min(len(f.truth) - 2, 6)
+    return rows
+
+
+def wheels(f, entity):
+    """Rims and spokes of wheels across the normal of their place."""
+    lines = f.picture.line(entity, 0)
+    groups = [lines[k : k + 5] for k in range(0, len(lines), 5)]
+    centres = np.array([group[0][:-1].mean(0) for group in groups])
+    rows = rows_of_near(f, centres)
+    normals = f.truth.carried(f.truth.normal)[rows]
+    for group, centre, normal in zip(groups, centres, normals, strict=True):
+        rim = group[0] - centre
+        radius = np.linalg.norm(rim, axis=1)
+        assert np.ptp(radius) < 1e-4 * radius.max()
+        assert np.abs(rim @ normal).max() < 1e-4 * radius.max()
+        for spoke in group[1:]:
+            assert np.abs((spoke - centre) @ normal).max() < 1e-4 * radius.max()
+
+
+def rows_of_near(f, places) -> np.ndarray:
+    drawn = f.truth.place / f.truth.length
+    rows = np.array([int(np.argmin(np.linalg.norm(drawn - place, axis=1))) for place in places])
+    assert np.abs(drawn[rows] - places).max() < 1e-5 * f.truth.reach
+    return rows
+
+
+def ring(f) -> bool:
+    """Whether the flight goes round on one ring: then arrows and walls are lower."""
+    return "/world/fence/ring" in f.picture.entities
+
+
+def push_arrow(f, entity):
+    """From the craft along /thrust; half as long as the longest where it hardly pushes, nothing where it does not."""
+    origin, vector = arrows(f, entity)
+    same_place(origin, home(f, entity))
+    same_direction(vector, f.truth.carried(f.truth.thrust))
+    push = strength(f)
+    low, high = ON_RING if ring(f) else (SHORTEST, LONGEST)
+    length = np.linalg.norm(vector, axis=1) / scene_reach(f)
+    expected = np.where(push > 0, low + (high - low) * push / push.max(), 0.0)
+    assert np.abs(length - expected).max() < 1e-5
+
+
+def scene_reach(f) -> float:
+    """The largest distance that must be in sight: of the flight, of its target, of its ensembles."""
+    far = [f.truth.reach]
+    for entity in f.picture.entities:
+        if entity.startswith("/world/references/") and not entity.endswith("/reached"):
+            lines = np.concatenate(f.picture.line(entity, 0))
+            pink = hue(f.picture.color(entity, "LineStrips3D:colors")[0]) == "pink"
+            far.append(np.linalg.norm(lines, axis=1).max() / (1.004 if pink else 1.0))
+    for name, table in f.ensembles.items():
+        assert name
+        far.append(np.nanmax(table) / f.truth.length)
+    return max(far)
+
+
+def push_name(f, entity):
+    """ "push" outside the arrow's tip, where it pushes."""
+    assert f.picture.fixed(entity, "Points3D:labels") == ["push"]
+    push, ways = strength(f), f.truth.carried(f.truth.thrust)
+    shown = 0
+    for row, step in enumerate(f.truth.steps):
+        spot = f.picture.place(entity, "Points3D:positions", step)
+        assert len(spot) == (push[row] > 0)
+        if len(spot):
+            assert (spot[0] - home(f, entity)[row]) @ ways[row] >= 0
+            shown += 1
+    assert shown
+
+
+def close_push(f, entity):
+    """From the craft along /thrust, 7.5 long and 4.5 times the root of its share of the largest more."""
+    origin, vector = arrows(f, entity)
+    same_place(origin, home(f, entity))
+    same_direction(vector, f.truth.rtn(f.truth.thrust))
+    push = strength(f)
+    expected = np.where(push > 0, 7.5 + 4.5 * np.sqrt(push / push.max()), 0.0)
+    assert np.abs(np.linalg.norm(vector, axis=1) - expected).max() < 1e-4

@@ -60,10 +60,10 @@ def test_an_archive_holds_every_column_under_its_name(any_run, path, tmp_path):
 
 def test_one_entity_alone_and_plots_beside_the_truth(runs, tmp_path):
     record(runs.displaced(rows=40), tmp_path / "run.rrd")
-    export(tmp_path / "run.rrd", tmp_path / "a.csv", entities=["state", "/plots/thrust"])
+    export(tmp_path / "run.rrd", tmp_path / "a.csv", entities=["state", "/plots/earth"])
     names = pyarrow.csv.read_csv(tmp_path / "a.csv").column_names
     assert names[:3] == ["step", "time_s", "utc"]
-    assert "plots/thrust.scalars" in names
+    assert "plots/earth.scalars" in names
     assert not any(name.startswith("attitude") for name in names)
     export(tmp_path / "run.rrd", tmp_path / "events.csv", entities=["/events"])
     assert pyarrow.csv.read_csv(tmp_path / "events.csv").column_names[:3] == ["name", "step", "time_s"]
@@ -130,7 +130,7 @@ def test_another_reader_agrees_with_what_was_written(runs, tmp_path):
         ({"to": "xls"}, "there are csv, parquet, npz, oem"),
         ({}, "one of csv, parquet, npz, oem"),
         ({"to": "csv", "entities": ["/stat"]}, "/stat"),
-        ({"to": "csv", "entities": ["/sail/pitch/arc"]}, "another number of values"),
+        ({"to": "csv", "entities": ["/sail/angle/arc"]}, "another number of values"),
         ({"to": "csv", "entities": ["/state", "/world/stars"]}, "does not change over time"),
         ({"to": "csv", "frame": "EME2000"}, "named in an OEM"),
         ({"to": "oem", "frame": "ICRF"}, "EME2000 or ECLIPJ2000, not in ICRF"),

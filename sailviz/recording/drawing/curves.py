@@ -23,6 +23,7 @@ from sailviz.recording.drawing.samples import Frame
 from sailviz.run.arrays import Run, Setting
 
 PLOT_ROWS = 3000
+FAR_ROWS = 1200  # where rows are far apart on their orbit: there are many curves of years
 MOST_BINS, ROWS_IN_BIN = 400, 8
 BAND_TURNS = 40.0  # revolutions from which a swing within one is a solid block
 SWING = 0.04  # of the whole range, within a bin, from which a curve is a band
@@ -53,8 +54,9 @@ class Swing:
         known = np.isfinite(values)
         self.low[place] = np.minimum(self.low[place], np.minimum.reduceat(np.where(known, values, np.inf), starts))
         self.high[place] = np.maximum(self.high[place], np.maximum.reduceat(np.where(known, values, -np.inf), starts))
-        self.total[place] += np.add.reduceat(np.where(known, values, 0.0), starts)
-        self.count[place] += np.add.reduceat(known.astype(float), starts)
+        for k in range(values.shape[1]):  # one by one: sums of parts would depend on the blocks
+            np.add.at(self.total[:, k], bin_of[known[:, k]], values[known[:, k], k])
+            np.add.at(self.count[:, k], bin_of[known[:, k]], 1.0)
 
     def scaled(self, factor: float) -> Swing:
         """The same in another unit."""
@@ -66,7 +68,9 @@ class Curves:
 
     def __init__(self, picture: Picture, first: Run, frame: Frame, craft: CraftDrawing):
         self._picture, self._frame, self._setting = picture, frame, first.setting
-        self._picker = timelines.Picker(first.setting.rows, PLOT_ROWS, first.setting.duration)
+        self._picker = timelines.Picker(
+            first.setting.rows, FAR_ROWS if frame.sparse else PLOT_ROWS, first.setting.duration
+        )
         self.plots = plots_of(first, frame, craft)
         self._number: list[np.ndarray] = []
         self._time: list[np.ndarray] = []
@@ -75,7 +79,7 @@ class Curves:
         self._bins = bins if np.isfinite(frame.turns) and frame.turns > BAND_TURNS else 0
         self._swings = {plot.path: Swing.of(self._bins, len(plot.names)) for plot in self.plots if self._bins}
         self._reach: dict[str, tuple[float, float]] = {}
-        self._lanes = Lanes(picture, first, frame, craft)
+        self._lanes = Lanes(first, frame, craft)
 
     def add(self, run: Run) -> None:
         """A block of a run, all rows."""
@@ -139,10 +143,9 @@ class Curves:
                 words.append(plot.steady.format(mean))
         return words
 
-    @property
-    def lanes(self) -> list[str]:
-        """Paths of the lanes that can be read."""
-        return self._lanes.shown
+    def write_lanes(self) -> list[str]:
+        """Write what goes on and off -> paths of the lanes."""
+        return self._lanes.write(self._picture, self._setting)
 
     def _write(self, plot: Plot, index: list[rr.TimeColumn], values: np.ndarray) -> PlotView:
         kept = merged(plot.names, values)
@@ -179,7 +182,7 @@ class Curves:
 
     def _banded(self, plot: Plot, kept: list[tuple[str, int]], whole: float) -> bool:
         """Whether some curve swings so much within a bin that a line would be a block."""
-        if not self._bins or whole <= 0:
+        if not self._bins or whole <= 0 or not plot.swings:
             return False
         swing = self._swings[plot.path]
         inside = [swing.high[:, k] - swing.low[:, k] for _, k in kept]
@@ -214,32 +217,17 @@ class Curves:
 
 
 class Lanes:
-    """On and off: only the changes are written."""
+    """On and off: only the changes are kept, and written where they can be read."""
 
-    def __init__(self, picture: Picture, first: Run, frame: Frame, craft: CraftDrawing):
-        self._picture = picture
+    def __init__(self, first: Run, frame: Frame, craft: CraftDrawing):
         self._names = [name for name, values in first.environment.items() if values.dtype == bool]
         if craft.pushes:
             self._names.insert(0, "thrust")
-        self._state: dict[str, str] = {}
+        self._craft = craft
         self._time = frame.start  # s, of the last row so far
         self._far = np.inf if frame.sun else UNKNOWN * frame.period
-        self._changes = dict.fromkeys(self._names, 0)
-        for lane in self._names:
-            on, off = lane_style(craft.lane if lane == "thrust" else lane)
-            picture.log_static(
-                lane_path(lane),
-                rr.StateConfiguration(
-                    values=["on", "off", "unknown"],
-                    labels=[on[0], off[0], "between far rows"],
-                    colors=[on[1], off[1], style.UNKNOWN],
-                ),
-            )
-
-    @property
-    def shown(self) -> list[str]:
-        """Paths of the lanes that change, but not so often that nothing is read."""
-        return [lane_path(name) for name, changes in self._changes.items() if 0 < changes <= MOST_CHANGES]
+        self._states: dict[str, list[str]] = {name: [] for name in self._names}
+        self._rows: dict[str, list[tuple[int, float]]] = {name: [] for name in self._names}  # number and time of each
 
     def add(self, run: Run) -> None:
         """A block of a run, all rows."""
@@ -251,13 +239,32 @@ class Lanes:
         self._time = float(run.time[-1])
 
     def _add(self, lane: str, run: Run, states: np.ndarray) -> None:
-        before = self._state.get(lane)
-        changed = np.flatnonzero(np.concatenate([[before or ""], states[:-1]]) != states)
-        self._state[lane] = str(states[-1])
-        if len(changed):
-            self._changes[lane] += int(np.sum(states[changed] != "unknown")) - (before is None)
-            index = timelines.time_columns(run.setting, run.first + changed, run.time[changed])
-            self._picture.log_columns(lane_path(lane), index, rr.StateChange.columns(state=states[changed].tolist()))
+        known = self._states[lane]
+        changed = np.flatnonzero(np.concatenate([[known[-1] if known else ""], states[:-1]]) != states)
+        if len(known) + len(changed) > 4 * MOST_CHANGES:
+            changed = changed[: max(4 * MOST_CHANGES - len(known), 0)]  # it will not be shown
+        known += states[changed].tolist()
+        self._rows[lane] += zip((run.first + changed).tolist(), run.time[changed].tolist(), strict=True)
+
+    def write(self, picture: Picture, setting: Setting) -> list[str]:
+        """Write the lanes that change, but not so often that nothing is read -> their paths."""
+        shown = []
+        for lane, states in self._states.items():
+            changes = sum(state != "unknown" for state in states) - 1
+            if not changes > 0 or len(states) > MOST_CHANGES:
+                continue
+            on, off = lane_style(self._craft.lane if lane == "thrust" else lane)
+            configuration = rr.StateConfiguration(
+                values=["on", "off", "unknown"],
+                labels=[on[0], off[0], "between far rows"],
+                colors=[on[1], off[1], style.UNKNOWN],
+            )
+            picture.log_static(lane_path(lane), configuration)
+            number, time = zip(*self._rows[lane], strict=True)
+            index = timelines.time_columns(setting, list(number), list(time))
+            picture.log_columns(lane_path(lane), index, rr.StateChange.columns(state=states))
+            shown.append(lane_path(lane))
+        return shown
 
 
 def lane_path(lane: str) -> str:

@@ -103,7 +103,7 @@ class Drawing:
             spaces=spaces,
             close=close,
             plots=plots,
-            lanes=self._curves.lanes,
+            lanes=self._curves.write_lanes(),
             arrivals=arrivals_of(setting) if setting.ensembles else (),
             bars=bars,
             spans=spans,

@@ -14,6 +14,7 @@ from sailviz.shapes.primitives import circle, disc
 
 COUNT, MANY = 12, 14  # up to three turns, and above
 HALF = 0.5  # of the craft's own size
+APART = 0.4  # of the way between two of them, a wheel's radius or half a film's side at most
 SPOKES = 4
 
 
@@ -35,7 +36,9 @@ def log_ghosts(picture: Picture, story: Story, size: float) -> None:
     if len(rows) == 0 or not (story.craft.facing or story.craft.slanted):
         return
     place, axes = story.position[rows], body_axes(story.normal[rows], story.samples.axes[rows][..., 1])
-    small = HALF * size
+    gaps = np.linalg.norm(np.diff(place, axis=0), axis=1)
+    room = float(np.median(gaps)) if len(gaps) else size
+    small = min(HALF * size, (APART if story.craft.slanted else 2 * APART) * room)
     poses = rr.InstancePoses3D(
         translations=f4(place), quaternions=f4(quaternion(axes)), scales=f4(np.full((len(rows), 3), small))
     )

@@ -26,6 +26,7 @@ LARGER = 1.004  # a ring beside the trail: lines on one another tear
 RAISED = 0.085  # of S: events' names stand above their places, planets' hang below
 MOST_EVENTS = 2  # named between start and end
 THERE = 0.02  # of S: closer than this is the same place or the same line
+MEET = 0.06  # of S: start and end closer than this have one name
 NEAR_END = 0.97  # of the time from which an event is what the flight ends with
 
 
@@ -206,10 +207,12 @@ def log_marks(picture: Picture, story: Story, eye: np.ndarray) -> None:
     """Dots and names at the start, at the end and at one or two events between; a ring has neither start nor end."""
     if story.ring or np.linalg.norm(story.position - story.position[0], axis=1).max() < 1e-2 * story.reach:
         return
-    rise = np.array([0.0, 0.0, RAISED * story.reach / max(np.sqrt(1 - eye[2] ** 2), 0.3)])
     marks = [("start", story.position[0]), *marked_events(story)]
     if story.setting.ensembles:
         marks = marks[:1]
+    elif np.linalg.norm(story.position[-1] - story.position[0]) < MEET * story.reach:
+        marks = [*marks[:-1], (f"{marks[-1][0]}: where it began", story.position[-1])][1:]
+    rise = np.array([0.0, 0.0, RAISED * story.reach / max(np.sqrt(1 - eye[2] ** 2), 0.3)])
     dots = np.array([place for _, place in marks])
     picture.log_static("/world/marks", rr.Points3D(f4(dots), radii=points(style.MARK_DOT), colors=[style.CRAFT]))
     for number, (words, place) in enumerate(marks):

@@ -32,7 +32,7 @@ SATELLITE, SMALL = 0.062, 0.05  # size of a satellite with a tether, and with ai
 FILM = 0.075  # side of a drag sail
 TETHER, CLEARANCE = 0.075, 0.75  # length of a tether, and how much of the altitude it may take at most
 LEAST_TETHER = 0.004
-MANY = 9  # arrows along a tether
+MANY = 7  # arrows along a tether
 LEAST, MORE = 0.035, 0.075  # length of a drag arrow, and what the root of its share of the largest adds
 TAIL = 0.9  # rad of the orbit behind the craft that are bright
 BESIDE = 1.0004  # radii: the tail lies over the ring
@@ -88,7 +88,7 @@ def log_orbit(picture: Picture, story: Story, colors: np.ndarray) -> None:
     picture.log_strips("/world/tail", story.index, tails(story), colors)
 
 
-def tails(story: Story, count: int = 25) -> np.ndarray:
+def tails(story: Story, count: int = 16) -> np.ndarray:
     """The part of the orbit behind the craft, (n, count, 3)."""
     run, axes = story.samples.run, story.samples.axes
     back = np.linspace(-TAIL, 0.0, count)

@@ -58,10 +58,10 @@ def log_planet(picture: Picture, path: str, name: str) -> None:
     world_map = shipped_folder("assets") / "earth_4096.jpg"
     if name != "Earth" or not world_map.is_file():
         color = style.OCEAN if name == "Earth" else style.dim(style.PLANETS.get(name, style.ROCK), 0.8)
-        picture.log_mesh(f"{path}/ball", ball(96, 192), color, shaded=False)
+        picture.log_mesh(f"{path}/ball", ball(72, 144), color, shaded=False)
         return
     picture.log_static(
-        f"{path}/ball", rr.Asset3D(contents=globe(world_map.read_bytes(), 96, 192), media_type="model/gltf-binary")
+        f"{path}/ball", rr.Asset3D(contents=globe(world_map.read_bytes(), 72, 144), media_type="model/gltf-binary")
     )
 
 

@@ -35,6 +35,7 @@ class Plot:
     from_zero: bool = False
     steady: str = ""  # how a constant one is told, with {} for the number; "" where it is not worth telling
     handy: bool = False  # in m/s2; its unit is chosen when the largest value of the run is known
+    swings: bool = True  # a swing is that of the craft's own revolution
     noise: float = 0.0  # a change below it is rounding, and is not shown as a change
 
     @property
@@ -212,6 +213,7 @@ def open_space_plots(first: Run, frame: Frame, craft: CraftDrawing) -> list[Plot
                 natural=frame.origin_radius,
                 bonus=0.5,
                 from_zero=True,
+                swings=False,
             )
         )
     return found

@@ -8,8 +8,10 @@ import rerun as rr
 
 import sailviz
 from sailviz.errors import RecordingError
-from sailviz.recording import Recorder, compare, export, record
+from sailviz.recording import compare, export, record
 from sailviz.recording.contract import tables
+from sailviz.recording.drawing import system_view
+from sailviz.recording.drawing.drawing import Drawing
 from sailviz.recording.timelines import take
 from sailviz.run.resample import at, cost
 
@@ -94,23 +96,28 @@ def test_a_flipped_arrow_is_found_in_the_numbers_and_in_the_picture(runs, record
     found = compare(recorded(run), recorded(flipped))
     assert found["/thrust:acceleration_m_s2"].beyond == 3
     assert found["/thrust:acceleration_m_s2"].row == 11
-    assert found["/sail/force/arrow:vectors"].row == found["/world/craft/thrust/arrow:vectors"].row == 11
+    assert found["/sail/push:vectors"].row == found["/world/craft/push:vectors"].row == 11
     assert not found.faults
 
 
-def test_a_flipped_arrow_of_the_picture_alone_is_found(runs, recorded, tmp_path):
+def test_a_flipped_arrow_of_the_picture_alone_is_found(runs, recorded, tmp_path, monkeypatch):
     run = runs.displaced(rows=60)
     before = recorded(run)
-    with Recorder(tmp_path / "flipped.rrd") as recorder:
-        recorder.add(run)
+    finish = Drawing.finish
+
+    def lie(drawing, last):
+        finish(drawing, last)
         time = rr.TimeColumn("step", sequence=[30])
         rows = rr.TimeColumn("sim_time", duration=[np.timedelta64(round(run.time[30] * 1e9), "ns")])
         utc = rr.TimeColumn("utc", timestamp=[run.setting.epoch + np.timedelta64(round(run.time[30] * 1e9), "ns")])
         arrow = rr.Arrows3D.columns(vectors=[[1.0, 0.0, 0.0]])
-        recorder._growing.stream.send_columns("/world/craft/thrust/arrow", [time, rows, utc], arrow)
+        drawing._stream.send_columns("/world/craft/push", [time, rows, utc], arrow)
+
+    monkeypatch.setattr(Drawing, "finish", lie)
+    record(run, tmp_path / "flipped.rrd")
     found = compare(before, tmp_path / "flipped.rrd")
     assert all(d.equal for d in found.quantities)
-    assert {d.quantity for d in found.picture} == {"/world/craft/thrust/arrow:vectors"}
+    assert {d.quantity for d in found.picture} == {"/world/craft/push:vectors"}
     assert not found.equal
     assert compare(before, tmp_path / "flipped.rrd", picture=False).equal
 
@@ -134,15 +141,13 @@ def test_a_missing_an_added_and_a_shifted_event_are_found(runs, recorded):
 
 
 def test_a_lost_view_is_found(runs, recorded, monkeypatch):
-    import sailviz.recording.drawing.layout as layout
-
     run = runs.displaced(rows=60)
     before = recorded(run)
-    about_sun = layout.about_sun
-    monkeypatch.setattr(layout, "about_sun", lambda *a: [c for c in about_sun(*a) if c.name != "From the pole"])
+    views_of = system_view.views_of
+    monkeypatch.setattr(system_view, "views_of", lambda *a: [s for s in views_of(*a) if s.name != "Riding along"])
     found = compare(before, recorded(run))
     assert not found.equal
-    assert any('view "From the pole"' in fault and "missing in B" in fault for fault in found.faults)
+    assert any('view "Riding along"' in fault and "missing in B" in fault for fault in found.faults)
     assert all(d.equal for d in found.quantities)
 
 

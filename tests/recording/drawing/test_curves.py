@@ -1,14 +1,22 @@
-"""Lanes of light and shadow."""
+"""Lanes of light and shadow, and bands of what swings within a revolution."""
 
-from sailviz.recording import read
-from sailviz.recording.drawing.curves import Curves
+from dataclasses import replace
+
+import numpy as np
+
+from sailviz.recording import read, record
+from sailviz.recording.drawing.curves import Curves, Swing
 from sailviz.recording.drawing.devices import CRAFT
 from sailviz.recording.drawing.samples import Frame
+from sailviz.recording.timelines import take
 
 
-def test_light_and_shadow_are_unknown_between_rows_far_apart(years):
-    run, path = years
-    lane = read(path)["/phase/sunlit"]
+def test_light_and_shadow_are_unknown_between_rows_far_apart(years, tmp_path):
+    whole, _ = years
+    run = take(whole, slice(380, 460))  # into the dense window
+    run = replace(run, setting=replace(whole.setting, rows=len(run)))
+    record(run, tmp_path / "part.rrd")
+    lane = read(tmp_path / "part.rrd")["/light"]
     states, step = lane["state"], lane.timeline("step")
     for state, row in zip(states, step, strict=True):
         gap = run.time[row] - run.time[max(row - 1, 0)]
@@ -21,8 +29,25 @@ def test_a_lane_of_light_is_left_out_where_all_rows_are_far_apart(runs, low_orbi
     run = low_orbit.with_everything(runs.descent(rows=200, days=300.0))
     curves = Curves(Silent(), run, Frame.of(run), CRAFT[run.setting.craft.kind])
     curves.add(run)
-    assert curves.changes["sunlit"] == 0
-    assert curves.changes["force_law_valid"] > 0
+    lanes = curves.write_lanes()
+    assert "/light" not in lanes
+    assert "/force_law_valid" in lanes
+
+
+def test_a_band_does_not_depend_on_the_blocks_in_which_its_values_came():
+    values = np.random.default_rng(4).normal(size=(1000, 2))
+    values[::7, 1] = np.nan
+    place = np.minimum(np.arange(1000) // 30, 31)
+    whole, pieces = Swing.of(32, 2), Swing.of(32, 2)
+    whole.add(place, values)
+    for start in range(0, 1000, 77):
+        pieces.add(place[start : start + 77], values[start : start + 77])
+    assert np.array_equal(whole.low, pieces.low)
+    assert np.array_equal(whole.high, pieces.high)
+    assert np.array_equal(whole.count, pieces.count)
+    assert np.allclose(whole.total, pieces.total, rtol=1e-13)
+    assert whole.low[3, 0] == values[place == 3, 0].min()
+    assert whole.high[5, 1] == np.nanmax(values[place == 5, 1])
 
 
 class Silent:

@@ -34,14 +34,15 @@ def test_the_views_of_a_low_orbit_show_its_colours(years, tmp_path):
     _, path = years
     seen = {}
     with Studio(path, size=(640, 440)) as studio:
-        for view, at in (("Earth", 0.1), ("Earth", 0.9), ("Descent", 0.1), ("Descent", 0.9), ("Tether close", 0.5)):
+        shots = ("Where", 0.1), ("Where", 0.9), ("Descent", 0.1), ("Descent", 0.9), ("Riding", 0.1), ("Riding", 0.9)
+        for view, at in shots:
             report = studio.shoot(tmp_path / "view.png", view=view, at=at)
             assert report.errors == report.warnings == (), view
             seen[view, at] = np.asarray(Image.open(report.path).convert("RGB"), int)
     red, green, blue = np.moveaxis(seen["Descent", 0.9], -1, 0)
     assert np.mean((red > 60) & (blue > green + 30) & (red > green + 10)) > 0.05, "no violet band"
-    for at, warm in ((0.1, False), (0.9, True)):  # the bright orbit: blue at the start, orange near the end
-        red, green, blue = np.moveaxis(seen["Descent", at], -1, 0)
-        line = (red > 215) & (green > 120) & (blue < 200) if warm else (blue > 225) & (red < 160) & (green > 150)
-        assert line.sum() > 150, f"no bright orbit at {at}"
-    assert np.mean(np.abs(seen["Earth", 0.1] - seen["Earth", 0.9]).max(-1) > 24) > 0.05, "the Earth does not turn"
+    for at, pink in ((0.1, False), (0.9, True)):  # the bright tail: blue at the start, pink near the end
+        red, green, blue = np.moveaxis(seen["Riding", at], -1, 0)
+        line = (red > 190) & (green < 140) & (blue > 120) if pink else (blue > 225) & (red < 160) & (green > 150)
+        assert line.sum() > 150, f"no bright tail at {at}"
+    assert np.mean(np.abs(seen["Where", 0.1] - seen["Where", 0.9]).max(-1) > 24) > 0.05, "the Earth does not turn"

@@ -120,7 +120,7 @@ def test_recordings_with_ensembles_compare_export_and_tell(run, recorded, tmp_pa
     }
     facts = info(recorded)
     assert "/ensemble/held" in facts["truth"]
-    assert {"Off nominal", "Percentiles", "Tether voltage [kV]"} <= set(facts["views"])
+    assert {"Off nominal", "Flight", "Voltage of the tethers [kV]"} <= set(facts["views"])
 
 
 def test_one_flight_of_a_thousand_does_not_depend_on_how_many_fly(run):

@@ -26,7 +26,8 @@ def test_smooth_lines_follow_a_circle_to_a_thousandth_of_its_radius():
 def column(recording, entity, name):
     """The rows of one component of a picture's entity, and the numbers of the rows."""
     table = recording[entity]
-    return np.asarray(table[name], float), table.timeline("step")
+    values = np.asarray(table[name], float)
+    return values.reshape(len(values), -1), table.timeline("step")
 
 
 def turn(quaternion):
@@ -52,7 +53,7 @@ def test_a_slowed_orbit_and_the_globe_keep_their_number_of_revolutions_a_day(yea
 def test_in_a_dense_window_craft_and_globe_are_where_they_were(years, low_orbit):
     run, path = years
     recording = read(path)
-    place, step = column(recording, "/world/craft", "translation")
+    place, step = column(recording, "/world/craft", "positions")
     quaternion, _ = column(recording, "/world/center/globe", "quaternion")
     gap = np.diff(run.time[step], prepend=-np.inf)
     inside = (gap < 600) & (np.roll(gap, 1) < 600)
@@ -64,7 +65,7 @@ def test_in_a_dense_window_craft_and_globe_are_where_they_were(years, low_orbit)
 
 def test_outside_it_the_craft_is_drawn_on_the_orbit_of_its_row(years, low_orbit):
     run, path = years
-    place, step = column(read(path), "/world/craft", "translation")
+    place, step = column(read(path), "/world/craft", "positions")
     e = take(run, step).elements
     normal = unit(np.cross(run.position, run.velocity))[step]
     distance = np.linalg.norm(place, axis=1) * low_orbit.RADIUS
@@ -78,7 +79,7 @@ def test_evenly_spaced_rows_that_leap_along_the_orbit_are_all_slowed(runs, tmp_p
     frame = Frame.of(run)
     assert frame.sparse
     record(run, tmp_path / "run.rrd")
-    place, _ = column(read(tmp_path / "run.rrd"), "/world/craft", "translation")
+    place, _ = column(read(tmp_path / "run.rrd"), "/world/craft", "positions")
     step = np.arccos(np.clip(np.sum(unit(place[1:]) * unit(place[:-1]), 1), -1, 1))
     assert step.max() < 2 * np.pi * 30 / 600 * 1.05  # 30 revolutions over the run, on a nearly circular orbit
 

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 VIEW_FAILED = 1
 MAGIC = b"RRF2"  # the first bytes of a recording
-PICTURE_SIZE, MOVIE_SIZE = (1600, 900), (960, 540)
+PICTURE_SIZE, MOVIE_SIZE = (1600, 900), (1280, 720)
 
 
 class Size(click.ParamType):
@@ -50,12 +50,15 @@ class Size(click.ParamType):
 @click.argument("sources", nargs=-1, required=True, metavar="FILE|SCENE...")
 @click.option("-o", "--output", metavar="PNG|DIR", help="By default NAME.png in this folder.")
 @click.option(
-    "--view", metavar="NAME", help="One view alone, by the start of its name: System, Follow, Earth, Events..."
+    "--view", metavar="NAME", help="One view alone, by the start of its name: Flight, From above, Riding along, Push..."
 )
 @click.option("--at", default="end", show_default=True, metavar="TIME", help="start, end, 0.6, or 120d, 0.5yr, 36h.")
-@click.option("--size", type=Size(), metavar="WxH", help="In pixels; 1600x900, a movie 960x540.")
-@click.option("--bare", is_flag=True, help="Leave out menu and time panel, as movies do.")
-@click.option("--movie", "film", metavar="MOVIE", help="Make a .webp, .gif or .mp4 of the whole run instead.")
+@click.option("--size", type=Size(), metavar="WxH", help="In pixels; 1600x900, a movie 1280x720.")
+@click.option("--dressed", is_flag=True, help="One view with title, line of the moment and progress, as movies have.")
+@click.option("--plain", is_flag=True, help="A movie of the whole window, or of one view, without these.")
+@click.option("--chrome", is_flag=True, help="With the viewer's menu and badges.")
+@click.option("--bare", is_flag=True, help="Without the time panel too.")
+@click.option("--movie", "film", metavar="MOVIE", help="Make a .mp4, .webp or .gif of the whole run instead.")
 @click.option(
     "--seconds",
     type=Number(0, 3000, "seconds", above=True),
@@ -74,6 +77,9 @@ def picture(
     view: str | None,
     at: str,
     size: tuple[int, int] | None,
+    dressed: bool,
+    plain: bool,
+    chrome: bool,
     bare: bool,
     film: str | None,
     seconds: float,
@@ -87,6 +93,10 @@ def picture(
     """
     if film is not None and output is not None:
         raise click.UsageError("-o is for pictures; --movie names its own file.")
+    if (dressed or view) and (chrome or bare):
+        raise click.UsageError("--chrome and --bare are for the whole window, not for one view.")
+    if plain and (dressed or film is None):
+        raise click.UsageError("--plain is for movies, which are dressed otherwise.")
     if len(sources) > 1 and (film is not None or (output and Path(output).suffix)):
         raise click.UsageError("one name, but there are several sources: give a folder.")
     with collecting_failures() as failures, failures.next():
@@ -95,9 +105,10 @@ def picture(
             with failures.next(source), _recording_of(source, settings, quiet) as path:
                 report: PictureReport | MovieReport
                 if film:
-                    report = _film(path, out, source, view, size or MOVIE_SIZE, seconds, fps, quiet)
+                    report = _film(path, out, source, view, size or MOVIE_SIZE, seconds, fps, not plain, quiet)
                 else:
-                    report = _shoot(path, out, view, at, size or PICTURE_SIZE, bare)
+                    looks = {"panels": not bare, "chrome": chrome, "dressed": dressed}
+                    report = _shoot(path, out, view, at, size or PICTURE_SIZE, looks)
                 for sentence in report.errors:
                     click.echo(f"{source}: {sentence}", err=True)
                     failures.worst(VIEW_FAILED)
@@ -132,7 +143,9 @@ def _outputs(sources: Sequence[str], output: str | None, film: str | None) -> li
     return files
 
 
-def _shoot(path: Path, out: Path, view: str | None, at: str, size: tuple[int, int], bare: bool) -> PictureReport:
+def _shoot(
+    path: Path, out: Path, view: str | None, at: str, size: tuple[int, int], looks: dict[str, bool]
+) -> PictureReport:
     from dataclasses import replace
 
     from sailviz.recording.views import screenshot
@@ -140,7 +153,7 @@ def _shoot(path: Path, out: Path, view: str | None, at: str, size: tuple[int, in
 
     fraction = fraction_of(path, at)
     with files.writing(out, "picture") as part:
-        report = screenshot.picture(path, part, view=view, at=fraction, size=size, panels=not bare)
+        report = screenshot.picture(path, part, view=view, at=fraction, size=size, **looks)
     return replace(report, path=out)
 
 
@@ -152,12 +165,13 @@ def _film(
     size: tuple[int, int],
     seconds: float,
     fps: float,
+    dressed: bool,
     quiet: bool,
 ) -> MovieReport:
     from sailviz.recording.views.movie import make_movie
 
     with progress_bar(f"Movie of {source}", quiet) as progress:
-        return make_movie(path, out, view=view, size=size, seconds=seconds, fps=fps, progress=progress)
+        return make_movie(path, out, view=view, size=size, seconds=seconds, fps=fps, dressed=dressed, progress=progress)
 
 
 def _said(report: PictureReport | MovieReport) -> str:

@@ -23,36 +23,18 @@ COLUMNS = 3
 class Pose:
     """What a picture shows: the start of a view's name, "" for the whole window, and a fraction of the run."""
 
-    view: str = "System"
+    view: str = "Flight"
     at: float = 0.7
 
 
-POSES = {  # chosen by eye; a scene that is not here is shown as `Pose()` says, one round a planet with "Follow"
-    "deorbit/cubesat": Pose("Follow", 0.35),
-    "deorbit/debris-260kg": Pose("Earth", 0.5),
-    "deorbit/gravity-gradient": Pose("Tether close-up", 0.4),
+POSES = {  # chosen by eye; a scene that is not here is shown as `Pose()` says, a low orbit from the craft
     "deorbit/satellite-100kg": Pose("", 0.5),
     "displaced/circular": Pose("", 0.7),
-    "displaced/earth-type-ii-elliptic": Pose("System", 0.35),
-    "displaced/ecliptic": Pose("System", 0.2),
-    "displaced/heliostationary": Pose("Follow", 0.35),
-    "displaced/mars-following": Pose("Follow", 0.35),
-    "displaced/polar-observer": Pose("Follow", 0.35),
-    "displaced/stable": Pose("E-sail close-up", 0.35),
-    "displaced/storm-warning": Pose("Follow", 0.7),
-    "displaced/type-ii": Pose("Follow", 0.35),
-    "displaced/unstable": Pose("System", 1.0),
-    "spirals/circumferential": Pose("Follow", 0.35),
-    "spirals/first-order": Pose("System", 0.35),
-    "spirals/first-order-ellipse": Pose("E-sail close-up", 0.35),
-    "spirals/logarithmic": Pose("System", 0.35),
-    "spirals/optical-sail": Pose("Follow", 0.35),
-    "spirals/radial-escape": Pose("Follow", 0.7),
-    "spirals/tangential-escape": Pose("Follow", 0.7),
-    "transfers/earth-mars-jpl-2015": Pose("", 0.6),
-    "transfers/solar-polar": Pose("System", 0.95),
-    "wind/mars": Pose("", 0.9),
-    "wind/transfer-arc": Pose("Follow", 0.35),
+    "displaced/polar-observer": Pose("Flight", 0.5),
+    "displaced/unstable": Pose("Flight", 1.0),
+    "transfers/earth-mars-jpl-2015": Pose("", 0.2),
+    "transfers/solar-polar": Pose("Flight", 0.95),
+    "wind/mars": Pose("", 1.0),
 }
 
 
@@ -88,7 +70,7 @@ def take(
 
 def pose_of(name: str) -> Pose:
     """How a scene is shown."""
-    return POSES.get(name, Pose("Follow") if name.startswith("deorbit/") else Pose())
+    return POSES.get(name, Pose("Riding along") if name.startswith("deorbit/") else Pose())
 
 
 def file_names(names: Iterable[str]) -> dict[str, str]:

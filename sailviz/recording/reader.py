@@ -139,6 +139,11 @@ class Recording(Mapping[str, Entity]):
         return str(self._reader.recordings()[0].application_id)
 
     @property
+    def title(self) -> str:
+        """The scene's title, "" where there is none."""
+        return self._word("title")
+
+    @property
     def scene_text(self) -> str:
         """The scene file that was run, word for word."""
         return self._word("text")

@@ -24,8 +24,8 @@ def test_every_shipped_scene_has_a_picture_of_its_own_and_no_pose_is_left_over()
 
 
 def test_a_scene_without_a_pose_is_shown_from_where_its_family_looks_well():
-    assert pose_of("deorbit/new") == Pose("Follow")
-    assert pose_of("spirals/new") == Pose("System")
+    assert pose_of("deorbit/new") == Pose("Riding along")
+    assert pose_of("spirals/new") == Pose("Flight")
 
 
 def test_squeezing_keeps_a_thin_line_of_a_rare_colour(tmp_path):

@@ -9,7 +9,7 @@ from sailviz.recording.views import screenshot as shot
 from sailviz.recording.views.screenshot import has_vulkan
 
 SHORT = ("--set", "propagation.duration_d=30", "--set", "propagation.outputs=20", "--set", "expect=[]")
-SMALL = ("--size", "320x200", "--view", "System")
+SMALL = ("--size", "320x200", "--view", "Flight")
 
 needs_vulkan = pytest.mark.skipif(
     not has_vulkan(), reason="no Vulkan driver: apt-get install libvulkan1 mesa-vulkan-drivers"
@@ -58,11 +58,11 @@ def test_a_complaint_of_a_view_is_exit_code_1(shell, recording, monkeypatch):
 
     true = shot.Studio.shoot
     monkeypatch.setattr(
-        shot.Studio, "shoot", lambda *words, **more: replace(true(*words, **more), errors=("System: no such entity",))
+        shot.Studio, "shoot", lambda *words, **more: replace(true(*words, **more), errors=("Flight: no such entity",))
     )
     result = shell("picture", recording, *SMALL)
     assert result.exit_code == 1
-    assert "System: no such entity" in result.stderr
+    assert "Flight: no such entity" in result.stderr
 
 
 @needs_vulkan
@@ -82,7 +82,7 @@ def test_a_movie_from_a_shell(shell, tmp_path, recording):
         (("--at", "later"), "is no moment of a run"),
         (("--size", "big"), "WIDTHxHEIGHT"),
         (("-o", "picture.jpg"), "must end in .png"),
-        (("--movie", "film.avi"), "must end in .webp, .gif or .mp4"),
+        (("--movie", "film.avi"), "must end in .mp4, .webp or .gif"),
         (("--movie", "film.gif", "-o", "a.png"), "-o is for pictures"),
         (("--set", "propagation.duration_d=3"), "--set changes scenes"),
     ],

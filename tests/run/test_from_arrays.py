@@ -64,7 +64,7 @@ def test_it_is_recorded_bit_for_bit_with_the_same_views(sink, tmp_path):
     assert str(back["/state"].timeline("utc")[0])[:16] == "2031-04-01T12:00"
     assert [event.name for event in back.events] == ["half"]
     assert "/world/planets/Earth/body" in back.entities
-    assert "System" in sailviz.recording.info(back)["views"]
+    assert "Flight" in sailviz.recording.info(back)["views"]
 
 
 def test_the_same_arrays_have_the_same_identity_and_others_another():

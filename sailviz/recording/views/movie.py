@@ -1,4 +1,4 @@
-"""Movies of a recording, frame by frame from one headless viewer: webp, gif, and mp4 with the extra `movie`."""
+"""Movies of a recording, frame by frame from one headless viewer: mp4 with the extra `movie`, webp and gif."""
 
 from __future__ import annotations
 
@@ -49,14 +49,15 @@ def make_movie(
     end: Moment = "end",
     seconds: float = 8.0,
     fps: float = 12.0,
-    size: tuple[int, int] = (960, 540),
+    size: tuple[int, int] = (1280, 720),
     panels: bool = False,
+    dressed: bool = True,
     progress: Callable[[float], None] | None = None,
 ) -> MovieReport:
-    """Make a movie of a recording; its format is the ending of `out`: .webp, .gif or .mp4.
+    """Make a movie of a recording; its format is the ending of `out`: .mp4, .webp or .gif.
 
-    view, panels : as in `picture`; start, end : moments of the run, as in `fraction_of`; seconds, fps : of the movie
-    progress : called with the fraction that is done
+    view, panels, dressed : as in `picture`; start, end : moments of the run, as in `fraction_of`
+    seconds, fps : of the movie; progress : called with the fraction that is done
     Nothing is written unless all of it is. Raises RecordingError for what cannot be shown, encoded or written.
     """
     began = time.monotonic()
@@ -64,16 +65,18 @@ def make_movie(
     count = frames_of(seconds, fps)
     files.check(out, "movie")
     first, last = fraction_of(path, start), fraction_of(path, end)
-    if view is not None:
+    if view is not None or dressed:
         size, panels = (size[0] + FRAME[0], size[1] + FRAME[1]), False
     errors: dict[str, None] = {}
     warnings: dict[str, None] = {}
     frames: list[Path] = []
     with files.writing(out, "movie") as part, scratch() as folder:
         with Studio(path, size=size, panels=panels) as studio:
+            view = view or (studio.main if dressed else None)
             for number, at in enumerate(np.linspace(first, last, count)):
                 agree = AGREE if number else FIRST_AGREE
-                report = studio.shoot(folder / f"{number:05d}.png", view=view, at=float(at), agree=agree)
+                png = folder / f"{number:05d}.png"
+                report = studio.shoot(png, view=view, at=float(at), agree=agree, dressed=dressed)
                 frames.append(report.path)
                 errors |= dict.fromkeys(report.errors)
                 warnings |= dict.fromkeys(report.warnings)
@@ -96,10 +99,10 @@ def frames_of(seconds: float, fps: float) -> int:
 
 def check_format(out: FilePath) -> Encoder:
     """The encoder for a file's ending. RecordingError where there is none, so that it is known before the work."""
-    encoders = {".webp": webp, ".gif": gif, ".mp4": mp4}
+    encoders = {".mp4": mp4, ".webp": webp, ".gif": gif}
     ending = Path(out).suffix.lower()
     if ending not in encoders:
-        raise RecordingError(f"{out} is no movie: its name must end in .webp, .gif or .mp4")
+        raise RecordingError(f"{out} is no movie: its name must end in .mp4, .webp or .gif")
     if ending == ".mp4":
         ffmpeg()
     return encoders[ending]

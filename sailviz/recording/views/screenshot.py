@@ -11,7 +11,7 @@ import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
@@ -22,6 +22,7 @@ from sailviz.errors import RecordingError
 from sailviz.recording.children import Child
 from sailviz.recording.reader import FilePath, read
 from sailviz.recording.sinks import viewer_binary
+from sailviz.recording.views.dressed import Words, dress, words_of
 from sailviz.recording.views.scratch import scratch
 from sailviz.recording.web_page import free_port
 
@@ -33,6 +34,7 @@ PACKAGES = "libvulkan1 mesa-vulkan-drivers"
 START, SETTLE = 60.0, 25.0  # s to wait for the viewer, and for a picture that no longer changes
 AGREE = 3  # frames in a row that must be the same
 BAR = 37  # pixels of the empty bar that a hidden menu leaves
+MAIN = ("Flight", "Riding along")  # the names of main views, and of recordings from elsewhere whatever comes first
 FRAME = (7, 34)  # pixels of the window round a view that fills it, the bar apart
 
 
@@ -55,17 +57,22 @@ def picture(
     at: float | str = 1.0,
     size: tuple[int, int] = (1600, 900),
     panels: bool = True,
+    chrome: bool = False,
+    dressed: bool = False,
 ) -> PictureReport:
     """Take one picture of a recording.
 
-    view : the start of a view's name (System, From the pole, Follow, ...) to have it alone, None for the whole window
-    at : fraction of the run, or "start", "end"; panels : False leaves out the menu and the time panel
+    view : the start of a view's name (Flight, From above, Riding along, ...) to have it alone, None for the window
+    at : fraction of the run, or "start", "end"; panels : False leaves out the time panel; chrome : with the viewer's
+    menu and badges; dressed : one view, by default the main one, with the title above, the line of the moment below
+    and how far the run has come
     Raises RecordingError where there is no such view, no Vulkan, or no viewer.
     """
-    if view is not None:
+    alone = view is not None or dressed
+    if alone:
         size, panels = (size[0] + FRAME[0], size[1] + FRAME[1]), False
-    with Studio(path, size=size, panels=panels) as studio:
-        return studio.shoot(png, view=view, at=at)
+    with Studio(path, size=size, panels=panels, chrome=chrome and not alone) as studio:
+        return studio.shoot(png, view=view or (studio.main if dressed else None), at=at, dressed=dressed)
 
 
 class Studio:
@@ -73,10 +80,12 @@ class Studio:
     studio.shoot("a.png")`.
     """
 
-    def __init__(self, path: FilePath, *, size: tuple[int, int] = (1600, 900), panels: bool = True):
+    def __init__(
+        self, path: FilePath, *, size: tuple[int, int] = (1600, 900), panels: bool = True, chrome: bool = False
+    ):
         read(path)  # says in one sentence what cannot be shown
-        self._path, self._panels = Path(path).resolve(), panels
-        self._size = (int(size[0]), int(size[1]) + (0 if panels else BAR))
+        self._path, self._panels, self._chrome = Path(path).resolve(), panels, chrome
+        self._size = (int(size[0]), int(size[1]) + (0 if chrome else BAR))
 
     def __enter__(self) -> Self:
         check_vulkan()
@@ -128,6 +137,17 @@ class Studio:
             time.sleep(0.05)
         raise RecordingError(f"the viewer did not show {self._path} within {START:.0f} s")
 
+    @cached_property
+    def _words(self) -> Words:
+        """What a dressed picture says."""
+        return words_of(self._path)
+
+    @property
+    def main(self) -> str:
+        """The name of the view that shows the flight."""
+        names = self._names()
+        return next((name for wanted in MAIN for name in names if name.startswith(wanted)), next(iter(names)))
+
     @property
     def views(self) -> list[str]:
         """Names of the views of the recording, without what stands in brackets."""
@@ -149,14 +169,18 @@ class Studio:
         at: float | str = 1.0,
         active: str | None = None,
         agree: int = AGREE,
+        dressed: bool = False,
     ) -> PictureReport:
-        """Take a picture of the window, or of one view alone; `active` is the start of the name of the tab in front."""
+        """Take a picture of the window, or of one view alone; `active` is the start of the name of the tab in front,
+        and `dressed` is as in `picture`."""
         started = time.monotonic()
         identity = self._show(view, active)
         self._go(at)
         image = self._settled(identity, agree)
-        if identity is None and not self._panels:
+        if identity is None and not self._chrome:
             image = without_bar(image)
+        if dressed:
+            image = dress(image, self._words, fraction(at))
         try:
             Path(png).write_bytes(image)
         except OSError as error:
@@ -179,14 +203,13 @@ class Studio:
         alone = self._find(view) if view else None
         front = self._find(active) if active else None
         wanted = (alone, front)
-        if wanted != (self._shown or (None, None)) or (self._shown is None and not self._panels):
+        as_it_is = self._chrome and self._panels
+        if wanted != (self._shown or (None, None)) or (self._shown is None and not as_it_is):
             changed = copy.deepcopy(self._blueprint)
+            if not self._chrome:
+                hide(changed, "top_panel", "PanelBlueprint")
             if not self._panels:
-                for panel in ("top_panel", "time_panel"):
-                    part = changed.setdefault(f"/{panel}", {})
-                    part.setdefault("TimePanelBlueprint" if panel == "time_panel" else "PanelBlueprint", {})[
-                        "state"
-                    ] = "Hidden"
+                hide(changed, "time_panel", "TimePanelBlueprint")
             if alone:
                 changed["/viewport"]["ViewportBlueprint"]["maximized"] = alone
             for part in changed.values():
@@ -199,14 +222,8 @@ class Studio:
 
     def _go(self, at: float | str) -> None:
         """Put the time cursor at a fraction of the run."""
-        try:
-            fraction = {"start": 0.0, "end": 1.0}[at] if isinstance(at, str) else float(at)
-        except (KeyError, ValueError):
-            raise RecordingError(
-                f"a picture is taken at a fraction of the run, 'start' or 'end', not at {at!r}"
-            ) from None
         timeline = self._timeline
-        value = int(timeline.start + (timeline.end - timeline.start) * min(max(fraction, 0.0), 1.0))
+        value = int(timeline.start + (timeline.end - timeline.start) * fraction(at))
         place: dict[str, Any] = {"sequence": value}
         if timeline.time_type == "duration":
             place = {"duration": np.timedelta64(value, "ns")}
@@ -225,6 +242,20 @@ class Studio:
                 break
             time.sleep(0.1)
         return last
+
+
+def fraction(at: float | str) -> float:
+    """A moment as a share of the run, 0 to 1. Raises RecordingError for what is none."""
+    try:
+        value = {"start": 0.0, "end": 1.0}[at] if isinstance(at, str) else float(at)
+    except (KeyError, ValueError):
+        raise RecordingError(f"a picture is taken at a fraction of the run, 'start' or 'end', not at {at!r}") from None
+    return min(max(value, 0.0), 1.0)
+
+
+def hide(blueprint: dict[str, Any], panel: str, archetype: str) -> None:
+    """Leave a panel of the viewer out."""
+    blueprint.setdefault(f"/{panel}", {}).setdefault(archetype, {})["state"] = "Hidden"
 
 
 def _first_line(error: Exception) -> str:

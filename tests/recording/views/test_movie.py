@@ -77,7 +77,7 @@ def test_a_movie_moves_and_reports_its_progress(run, tmp_path):
     report = make_movie(
         tmp_path / "run.rrd",
         tmp_path / "film.webp",
-        view="System",
+        view="Flight",
         end=0.5,
         seconds=0.8,
         fps=FPS,
@@ -95,7 +95,7 @@ def test_a_movie_moves_and_reports_its_progress(run, tmp_path):
 @pytest.mark.parametrize(
     ("out", "more", "said"),
     [
-        ("film.mov", {}, r"\.webp, \.gif or \.mp4"),
+        ("film.mov", {}, r"\.mp4, \.webp or \.gif"),
         ("film.gif", {"seconds": 0}, "frames"),
         ("film.gif", {"fps": 400}, "at most 60"),
         ("film.gif", {"start": "-1d"}, "outside the run"),

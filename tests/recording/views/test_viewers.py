@@ -148,7 +148,7 @@ def test_recordings_of_two_families_in_one_viewer_keep_their_layouts(runs, tmp_p
             again = viewer.get_blueprint(store_id=recording.store_id).blueprint
             assert sum("ViewBlueprint" in part for part in again.values()) == len(viewer.get_state().views)
         system, earth = sorted(shown.values(), key=lambda names: "Earth" in names)
-        assert {"System", "E-sail"} <= system
+        assert {"Flight", "E-sail"} <= system
         assert {"Earth", "Tether"} <= earth
         assert not {"Earth", "Tether"} & system
     finally:

@@ -147,10 +147,10 @@ def test_recordings_of_two_families_in_one_viewer_keep_their_layouts(runs, tmp_p
             shown[recording.store_id] = asked_until(views)
             again = viewer.get_blueprint(store_id=recording.store_id).blueprint
             assert sum("ViewBlueprint" in part for part in again.values()) == len(viewer.get_state().views)
-        system, earth = sorted(shown.values(), key=lambda names: "Earth" in names)
+        system, earth = sorted(shown.values(), key=lambda names: "Where" in names)
         assert {"Flight", "E-sail"} <= system
-        assert {"Earth", "Tether"} <= earth
-        assert not {"Earth", "Tether"} & system
+        assert {"Riding", "Where", "Altitude"} <= earth
+        assert not {"Where", "Altitude"} & system
     finally:
         end(process)
 

@@ -34,6 +34,7 @@ from sailviz.propulsion.thruster import thruster_force
 from sailviz.steering import attitude
 
 SIZE = 7  # of the state
+AT_ONCE = 256  # rows observed in one piece of compiled work where a user's function is called, which may take any time
 
 # where the numbers of a built-in device or law stand in the record
 DEVICE_PARTS = {
@@ -312,4 +313,12 @@ def observe(
 ) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any], np.ndarray[Any, Any]]:
     """What the craft did at given states. time (n,), states (7, n), factor (n,) -> normal (n, 3), acceleration of
     device (but not a plasma brake) and user force together (n, 3) m/s2, throttle of the steering law (n,)."""
-    return observe_compiled(time, states, factor, model.parameters)
+    count = len(time)
+    if count <= AT_ONCE or not (
+        model.parameters["callbacks"]["user_steering"][0] or model.parameters["callbacks"]["user_force"][0]
+    ):
+        return observe_compiled(time, states, factor, model.parameters)
+    parts = [slice(first, first + AT_ONCE) for first in range(0, count, AT_ONCE)]
+    found = [observe_compiled(time[i], np.ascontiguousarray(states[:, i]), factor[i], model.parameters) for i in parts]
+    normal, acceleration, on = (np.concatenate(column) for column in zip(*found, strict=True))
+    return normal, acceleration, on

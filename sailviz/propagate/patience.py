@@ -14,7 +14,7 @@ from time import perf_counter
 MOST_STEPS = 200_000_000  # of one flight, some minutes of work; a year in a low orbit takes half a million
 PIECE = 0.1  # s of wall time that a piece should take
 FIRST = 4096  # steps of the first piece: at most 0.15 s with the dearest of the forces that are built in
-FIRST_OF_OWN = 16  # where a user's function is called, which may take any time
+FIRST_OF_OWN = 1  # where a user's function is called, which may take any time
 MOST_OF_A_PIECE = 1_000_000
 WINDOW = 200_000  # steps over which progress is measured: a close passage of a body takes some hundreds
 
@@ -54,7 +54,7 @@ class Patience:
         """After a piece that came back: whether to go on. time s of flight reached, end s of it wanted."""
         taken = perf_counter() - self._begun
         wanted = self._piece * min(PIECE / max(taken, 1e-6), 8.0)
-        self._piece = int(min(max(wanted, FIRST_OF_OWN), MOST_OF_A_PIECE))
+        self._piece = int(min(max(wanted, 1), MOST_OF_A_PIECE))
         if self._begun + taken > self.until:
             return TIME_IS_UP
         if tried >= self.most_steps:

@@ -29,12 +29,13 @@ from sailviz.design.asymptotic.integrals import (
     time_terms,
 )
 
-OK, NO_MOMENTUM, ASYMPTOTE, HYPERBOLIC, NO_MASS, TOO_MANY_LEGS = range(6)
+OK, NO_MOMENTUM, ASYMPTOTE, HYPERBOLIC, NO_MASS, TOO_MANY_LEGS, PAUSED = range(7)
 PLAIN, MIDPOINT = 0, 1
 QUADRATURE, CLOSED, NONE = 0, 1, 2
 SMALLEST_E = 1e-3  # below it the closed form of the time loses digits as 1/e^2, and quadrature takes its place
 SAMPLES = 12  # per half revolution, in the search for q3 <= 0 or s <= 0
 MOST_LEGS = 10_000_000
+AT_ONCE = 50_000  # legs and outputs in one piece of compiled work, which hears no Ctrl-C: 0.1 s
 
 # Gauss-Legendre with 3, 8 and 20 points, one after the other, for panels that are short, middling and up to a half turn
 _NODES, _WEIGHTS = (np.concatenate(x) for x in zip(*map(np.polynomial.legendre.leggauss, (3, 8, 20)), strict=True))
@@ -208,46 +209,68 @@ def _plain(q1, q2, q3, f1, f2, f3, theta, theta1, n, eps_r, eps_t, clock):
     return OK, theta1, r1 * cos_w - r2 * sin_w, r1 * sin_w + r2 * cos_w, r3, elapsed
 
 
-@compiled
 def march(q, theta0, theta, leg, n, eps_r, eps_t, clock, scheme, loss, out, time, mass):
-    """Legs of fixed length over outputs that lie in one direction. Returns (status, angle of a breakdown, legs).
+    """(status, angle of a breakdown, legs) of `march_compiled` from the start q (3,), in pieces between which Ctrl-C is
+    heard."""
+    reached, done = np.array([*q, 0.0, 1.0, theta0], dtype=float), np.zeros(2, np.int64)
+    while True:
+        status, place = march_compiled(
+            reached, done, theta0, theta, leg, n, eps_r, eps_t, clock, scheme, loss, out, time, mass, AT_ONCE
+        )
+        if status != PAUSED:
+            return status, place, int(done[0])
 
-    q (3,) start; theta (k,) outputs, ordered away from theta0; leg > 0, inf for a single one. loss : canonical mass
+
+@compiled
+def march_compiled(
+    reached, done, theta0, theta, leg, n, eps_r, eps_t, clock, scheme, loss, out, time, mass, most
+):  # fmt: skip
+    """Legs of fixed length over outputs that lie in one direction. Returns (status, angle of a breakdown), PAUSED
+    after most legs and outputs.
+
+    reached (6,) q, time, mass and angle, and done (2,) legs and outputs, from where it goes on; theta (k,) outputs,
+    ordered away from theta0; leg > 0, inf for a single one. loss : canonical mass
     flow F / (m0 c); then eps are those of the initial mass. out (k, 3), time (k,), mass (k,) are filled.
     """
-    q1, q2, q3, t, m = q[0], q[1], q[2], 0.0, 1.0
-    here, row, count, legs = theta0, 0, len(theta), 0
+    q1, q2, q3, t, m, here = reached[0], reached[1], reached[2], reached[3], reached[4], reached[5]
+    legs, row, count = done[0], done[1], len(theta)
+    last = legs + row + most
     way = 1.0 if count == 0 or theta[count - 1] >= theta0 else -1.0
     while row < count:
+        done[0], done[1] = legs, row
+        if legs + row >= last:
+            reached[0], reached[1], reached[2], reached[3], reached[4], reached[5] = q1, q2, q3, t, m, here
+            return PAUSED, here
         stop = theta0 + way * leg * (legs + 1)
         if way * (theta[count - 1] - stop) < 1e-12 * leg:
             stop = theta[count - 1]
         legs += 1
+        done[0] = legs
         er, et = eps_r / m, eps_t / m
         middle = 0.5 * (here + stop)
         if loss > 0.0 and scheme == MIDPOINT:
             status, place, _, _, _, half = _plain(q1, q2, q3, q1, q2, q3, here, middle, n, er, et, QUADRATURE)
             if status != OK:
-                return status, place, legs
+                return status, place
             if not m - loss * half > 0.0:
-                return NO_MASS, middle, legs
+                return NO_MASS, middle
             er, et = eps_r / (m - loss * half), eps_t / (m - loss * half)
         f1, f2, f3 = q1, q2, q3
         if scheme == MIDPOINT:
             status, place, f1, f2, f3, _ = _plain(q1, q2, q3, q1, q2, q3, here, middle, n, er, et, NONE)
             if status != OK:
-                return status, place, legs
+                return status, place
         # the leg itself, output by output, on the ellipse f
         e, w, cos_w, sin_w, eta, b = frozen(f1, f2, f3)
         if not (e < 1.0 and f3 > 0.0):
-            return HYPERBOLIC, here, legs
+            return HYPERBOLIC, here
         scale = f3 ** (2 * n - 3)
         nu0 = here - w
         c0, e0, a0, bk0, bm0 = _start(n, nu0, e, eta, b)
         p1, p2 = q1 * cos_w + q2 * sin_w, q2 * cos_w - q1 * sin_w
         status, bad = _breakdown(n, nu0, stop - w, p1, p2, q3, c0, a0, bk0, bm0, e, eta, b, scale, er, et)
         if status != OK:
-            return status, bad + w, legs
+            return status, bad + w
         last_e, since = e0, 0.0
         ends = False
         while not ends:
@@ -272,30 +295,48 @@ def march(q, theta0, theta, leg, n, eps_r, eps_t, clock, scheme, loss, out, time
                 if row == count:
                     ends = True
             if m - loss * since <= 0.0:
-                return NO_MASS, target, legs
+                return NO_MASS, target
         q1, q2, q3 = g1, g2, r3
         t += since
         m -= loss * since
         here = stop
-    return OK, here, legs
+    return OK, here
+
+
+def march_adaptive(q, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, scheme, out, time):
+    """As `march`, with legs chosen by comparing one leg with two halves; returns (status, place, accepted legs,
+    trials)."""
+    reached, done = np.array([*q, 0.0, theta0, cap], dtype=float), np.zeros(3, np.int64)
+    while True:
+        status, place = march_adaptive_compiled(
+            reached, done, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, scheme, out, time, AT_ONCE // 5
+        )
+        if status != PAUSED:
+            return status, place, int(done[0]), int(done[2])
 
 
 @compiled
-def march_adaptive(q, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, scheme, out, time):
-    """As `march`, with legs chosen by comparing one leg with two halves; returns (status, place, accepted legs,
-    trials).
+def march_adaptive_compiled(
+    reached, done, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, scheme, out, time, most
+):  # fmt: skip
+    """`march_adaptive` from what is reached (6,), q, time, angle and length of leg, and done (3,), legs, outputs and
+    trials, on.
 
     Accepted where max|dq| <= tolerance dtheta / (2 pi); continued from twice the halves less the whole (Richardson).
     The difference enters the outputs inside a leg with the square of the way, as the error grows there.
     """
-    q1, q2, q3, t = q[0], q[1], q[2], 0.0
-    here, row, count, legs, trials = theta0, 0, len(theta), 0, 0
+    q1, q2, q3, t, here, wish = reached[0], reached[1], reached[2], reached[3], reached[4], reached[5]
+    legs, row, trials, count = done[0], done[1], done[2], len(theta)
+    last = trials + most
     way = 1.0 if count == 0 or theta[count - 1] >= theta0 else -1.0
-    wish = cap
     while row < count:
+        done[0], done[1], done[2] = legs, row, trials
+        if trials >= last:
+            reached[0], reached[1], reached[2], reached[3], reached[4], reached[5] = q1, q2, q3, t, here, wish
+            return PAUSED, here
         trials += 1
         if trials > MOST_LEGS:
-            return TOO_MANY_LEGS, here, legs, trials
+            return TOO_MANY_LEGS, here
         stop = here + way * wish
         if way * (theta[count - 1] - stop) < 1e-9 * wish:
             stop = theta[count - 1]
@@ -309,7 +350,7 @@ def march_adaptive(q, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, sch
             ht += half_t
         if status != OK:
             if wish < 1e-6:
-                return status, place, legs, trials
+                return status, place
             wish = 0.25 * length  # a leg too long for the expansion is no breakdown yet
             continue
         error = max(abs(w1 - h1), abs(w2 - h2), abs(w3 - h3))
@@ -324,7 +365,7 @@ def march_adaptive(q, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, sch
             share = ((theta[row] - here) / (stop - here)) ** power
             status, place, r1, r2, r3, rt = _end(q1, q2, q3, here, theta[row], n, eps_r, eps_t, clock, PLAIN)
             if status != OK:
-                return status, place, legs, trials
+                return status, place
             if scheme == MIDPOINT:  # inside, the midpoint's ellipse is that of the whole leg
                 status, place, f1, f2, f3, _ = _plain(q1, q2, q3, q1, q2, q3, here, middle, n, eps_r, eps_t, NONE)
                 status, place, r1, r2, r3, rt = _plain(q1, q2, q3, f1, f2, f3, here, theta[row], n, eps_r, eps_t, clock)
@@ -335,4 +376,5 @@ def march_adaptive(q, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, sch
         here = stop
         legs += 1
         wish = min(cap, length * min(3.0, 0.9 * allowed / max(error, 1e-300)))
-    return OK, here, legs, trials
+    done[0], done[1], done[2] = legs, row, trials
+    return OK, here

@@ -19,6 +19,7 @@ from sailviz.propagate import dop853_coefficients
 DONE, UNDERFLOW, TOO_MANY_STEPS = range(3)
 REASONS = ("", "the steps became too small", "it took too many steps")
 MOST_STEPS = 20_000
+AT_ONCE = 16  # flights in one piece of compiled work, which hears no Ctrl-C: milliseconds, 0.5 s at the very most
 MOST_SWITCHES = 1024
 SAFETY, SHRINK_MOST, GROW_MOST = 0.9, 0.333, 6.0  # Hairer's values
 
@@ -256,5 +257,8 @@ def fly_all(
     """Ends (n, 12) of n flights from starts (n, 12) over spans (n,); NaN where one fails. Units as in `propagate`."""
     starts, spans = np.ascontiguousarray(starts, dtype=float), np.ascontiguousarray(spans, dtype=float)
     ends, status = np.empty_like(starts), np.empty(len(spans), dtype=np.int64)
-    propagate_batch(starts, spans, sail.kind, sail.parameters, float(smoothing), float(tolerance), ends, status)
+    numbers = float(smoothing), float(tolerance)
+    for first in range(0, len(spans), AT_ONCE):
+        part = slice(first, first + AT_ONCE)
+        propagate_batch(starts[part], spans[part], sail.kind, sail.parameters, *numbers, ends[part], status[part])
     return ends

@@ -37,6 +37,7 @@ ROUNDINGS = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 0.0)  # of the switching, o
 FOLLOWED = 0.03  # the rounding that continuation keeps
 KEPT, CHILDREN, ZOOMS = 24, 16, 3
 PIECE, MOST_STEPS_OF_A_PIECE, DIVE = 2.0, 150, 0.02  # of screened flights: time, steps; radius
+MOST_AT_ONCE = 64  # flights that are screened in one piece of compiled work, which hears no Ctrl-C: 0.1 s
 WORKERS = min(8, os.cpu_count() or 1)
 
 
@@ -136,10 +137,14 @@ def in_threads(
     """[function(item)] in the order of the items; compiled code lets go of the interpreter."""
     results = []
     with ThreadPoolExecutor(WORKERS) as pool:
-        for result in pool.map(function, items):
-            results.append(result)
-            if progress is not None:
-                progress(len(results) / len(items))
+        try:
+            for result in pool.map(function, items):
+                results.append(result)
+                if progress is not None:
+                    progress(len(results) / len(items))
+        except BaseException:  # Ctrl-C: what waits is not begun
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
     return results
 
 
@@ -156,7 +161,8 @@ def _screened(problem, unknowns, span, smoothing, progress=None):
         screen(starts[places], span, samples, sail.kind, sail.parameters, smoothing, ROUGH, target, miss, when)
         return miss, when
 
-    found = in_threads(part, np.array_split(np.arange(len(unknowns)), 16), progress)
+    parts = max(16, -(-len(unknowns) // MOST_AT_ONCE))
+    found = in_threads(part, np.array_split(np.arange(len(unknowns)), parts), progress)
     miss, when = (np.concatenate(column) for column in zip(*found, strict=True))
     unknowns = unknowns.copy()
     unknowns[:, SPAN] = when

@@ -19,6 +19,7 @@ from sailviz.compiled import compiled, inlined
 
 R, THETA, U, V, LAM_R, LAM_U, LAM_V = range(7)  # what stands where in a state: r, angle, speeds and their costates
 SIZE = 7
+AT_ONCE = 100_000  # steps in one piece of compiled work, which hears no Ctrl-C: 0.1 s
 
 
 @dataclass(frozen=True)
@@ -51,10 +52,11 @@ def _rates(r, u, v, p, q, s, radial, transverse):
 
 
 @compiled
-def _shoot(y, time, steps, a_c, width, pitch, throttle):
-    """Advance y (7,), laid out as above, by classical Runge-Kutta steps, filling pitch and throttle (steps,)."""
+def _shoot(y, time, steps, a_c, width, pitch, throttle, first, last):
+    """Advance y (7,), laid out as above, by classical Runge-Kutta steps from the first to before the last, filling
+    their pitch and throttle (steps,)."""
     h = time / steps
-    for n in range(steps):
+    for n in range(first, last):
         r0, u0, v0, p, q, s = y[R], y[U], y[V], y[LAM_R], y[LAM_U], y[LAM_V]
         size = np.sqrt(q * q + s * s)
         alpha = 0.5 * np.arctan2(s, q)
@@ -98,7 +100,9 @@ def smoothed_transfer(
         sideways, upwards, duration = unknowns
         y = np.concatenate([[1.0, 0.0, 0.0, 1.0], direction(sideways, upwards)])
         pitch, throttle = np.empty(steps), np.empty(steps)
-        _shoot(y, duration, steps, characteristic_acceleration, width, pitch, throttle)
+        for first in range(0, steps, AT_ONCE):
+            last = min(first + AT_ONCE, steps)
+            _shoot(y, duration, steps, characteristic_acceleration, width, pitch, throttle, first, last)
         return y, pitch, throttle
 
     def miss(unknowns, steps):

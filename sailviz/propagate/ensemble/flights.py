@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections import deque
 from concurrent.futures import Future, ThreadPoolExecutor
 from queue import SimpleQueue
+from threading import Event
 from typing import Any, NamedTuple
 
 import numba
@@ -35,6 +36,8 @@ BLOCK = 1024  # flights that march together: state rows stay in the second-level
 BINS = 1024  # of a histogram, over twice the range of the first block: 0.2 % of that range each
 
 LANES = 64  # flights are taken in whole multiples of this
+LANE_STEPS = 3_000_000  # steps of all flights of a block before it comes back to Python: 0.1 s or less
+SEGMENT, SUBSTEP, REDRAW = range(3)  # how far a block has come
 
 # rows of a block's state: six of motion, see ensemble_motion; what drives it; sums over time; the wind's memory
 RHO, THETA, HEIGHT, U, V, W, FACTOR, VOLTAGE, PRESSURE = range(9)
@@ -182,62 +185,97 @@ def _drive(s, lanes, c, response):
 def fly_block(
     first, used, start, span, substeps, strength, redraw, new_level, update, output, aim, frame,
     mu, kind, seed, memory, low_deviate, inverse_step, table, spread, values, response,
-    c, reference, record, moments, low, width, counts, end, mean,
+    c, reference, record, moments, low, width, counts, end, mean, s, words, begin, place, total, most,
 ):  # fmt: skip
-    """Fly the flights first .. first + used - 1 from start to end. `Plan` and `Wind` taken apart, the row of the
-    control law, what to subtract from the sums (outputs, SEEN), and the arrays of `Ensemble` to fill: record, moments
-    and counts of this block, rows of end and mean of these flights."""
-    lanes = (used + LANES - 1) // LANES * LANES  # whole vectors, the last ones idle
-    s, words, begin = np.zeros((ROWS, lanes)), np.empty((4, lanes), np.uint64), np.zeros(lanes, np.int64)
+    """Fly the flights first .. first + used - 1 from start to end, or until `most` steps are made; returns whether that
+    was all. `Plan` and `Wind` taken apart, the row of the control law, what to subtract from the sums (outputs, SEEN),
+    and the arrays of `Ensemble` to fill: record, moments and counts of this block, rows of end and mean of these
+    flights. s, words, begin, place and total : what has to be known to go on, see `_Block`."""
+    lanes = s.shape[1]
     # a tuple: numbers in an array would be read again for every lane, in case that writing to `s` had changed them
     law_row = (c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], c[8], c[9], c[10], c[11])
-    redraws = 0
-    for n in range(len(span)):
-        redraws += redraw[n]
-    for i in range(lanes):
-        for a in range(6):
-            s[a, i] = start[a]
-        s[VOLTAGE, i], s[LEVEL, i] = np.nan, 1.0
-        seed_stream(words, i, np.uint64(seed), np.uint64(first + i))
-        if kind == REPLAYED:
-            begin[i] = int(uniform(words, i) * (len(table) - redraws + 1))
-    k = 0
-    total = 0.0
-    for n in range(len(span) + 1):
+    if place[SEGMENT] == 0 and place[SUBSTEP] == 0:
+        redraws = 0
+        for n in range(len(span)):
+            redraws += redraw[n]
+        for i in range(lanes):
+            for a in range(6):
+                s[a, i] = start[a]
+            s[VOLTAGE, i], s[LEVEL, i] = np.nan, 1.0
+            seed_stream(words, i, np.uint64(seed), np.uint64(first + i))
+            if kind == REPLAYED:
+                begin[i] = int(uniform(words, i) * (len(table) - redraws + 1))
+    k = place[REDRAW]
+    made = 0
+    for n in range(place[SEGMENT], len(span) + 1):
         ended = n == len(span)  # a turn for the outputs alone: so the compiler meets their code once
-        if not ended and new_level[n]:
+        fresh = place[SUBSTEP] == 0  # or in the middle of the segment's steps
+        if fresh and not ended and new_level[n]:
             for i in range(lanes):
                 s[LEVEL, i] = np.exp(spread * normal_quantile(uniform(words, i)))
-        if not ended and redraw[n]:
+        if fresh and not ended and redraw[n]:
             _redraw(s, lanes, words, begin, k, first, kind, memory, low_deviate, inverse_step, table, values)
             k += 1
-        if not ended and update[n]:
+        if fresh and not ended and update[n]:
             _control(s, lanes, aim[n, 0], aim[n, 1], frame, law_row)
-        if not ended and (redraw[n] or update[n]):
+        if fresh and not ended and (redraw[n] or update[n]):
             _drive(s, lanes, law_row, response)
-        if output[n] >= 0:
+        if fresh and output[n] >= 0:
             _observe(s, used, output[n], reference, law_row, record, moments, low, width, counts)
         if ended:
             break
         h = span[n] / substeps[n]
         g = strength[n]
-        for _ in range(substeps[n]):
+        # as many as there are, or as many as may be made before coming back
+        last = min(substeps[n], place[SUBSTEP] + most - made)
+        made += last - place[SUBSTEP] + 1
+        for _ in range(place[SUBSTEP], last):
             if frame == PLANE:
                 step_in_plane(s, s[FACTOR], lanes, h, g[0], g[1], g[3], g[4], mu)
             else:
                 step_in_space(s, s[FACTOR], lanes, h, g[0], g[1], g[2], g[3], g[4], g[5], mu, frame == MERIDIAN)
-        total += span[n]
+        if last < substeps[n]:
+            place[SEGMENT], place[SUBSTEP], place[REDRAW] = n, last, k
+            return False
+        place[SUBSTEP] = 0
+        total[0] += span[n]
         for i in range(lanes):
             s[SUM_FACTOR, i] += span[n] * s[FACTOR, i]
             s[SUM_VOLTAGE, i] += span[n] * s[VOLTAGE, i]
         if c[voltage_control.KIND] != voltage_control.CONSTANT:
             for i in range(lanes):
                 s[SUM_SATURATED, i] += span[n] if s[VOLTAGE, i] >= c[voltage_control.MAXIMUM] else 0.0
+        if made >= most:
+            place[SEGMENT], place[REDRAW] = n + 1, k
+            return False
     for i in range(used):
         for a in range(6):
             end[i, a] = s[a, i]
         for a in range(3):
-            mean[i, a] = s[SUM_FACTOR + a, i] / total
+            mean[i, a] = s[SUM_FACTOR + a, i] / total[0]
+    return True
+
+
+class _Block:
+    """What is remembered of a block of flights between two pieces of their way. Compiled code is deaf: it comes back
+    after about 0.1 s, so that Ctrl-C is heard and threads can be told to stop."""
+
+    def __init__(self, used: int) -> None:
+        lanes = (used + LANES - 1) // LANES * LANES  # whole vectors, the last ones idle
+        self.memory = (
+            np.zeros((ROWS, lanes)),
+            np.empty((4, lanes), np.uint64),
+            np.zeros(lanes, np.int64),
+            np.zeros(3, np.int64),  # SEGMENT, SUBSTEP, REDRAW
+            np.zeros(1),  # time so far
+        )
+        self.most = max(1, LANE_STEPS // lanes)
+
+    def fly(self, *arguments, stop: Event | None = None) -> None:
+        """All of the way; `fly_block` says what the arguments are. stop : ends it before, where set."""
+        while not fly_block(*arguments, *self.memory, self.most):
+            if stop is not None and stop.is_set():
+                return
 
 
 _NO_COUNTS = np.zeros((0, SEEN, BINS), np.int32)
@@ -250,7 +288,8 @@ def record_flights(plan: Plan, wind: Wind, control, flights, reference=None):
     record, moments = np.empty((flights, outputs, SEEN)), np.zeros((outputs, MOMENTS))
     end, mean = np.empty((flights, 6)), np.empty((flights, 3))
     reference = blank if reference is None else reference
-    fly_block(0, flights, *plan, *wind, control, reference, record, moments, blank, blank, _NO_COUNTS, end, mean)
+    arguments = 0, flights, *plan, *wind, control, reference, record, moments, blank, blank, _NO_COUNTS, end, mean
+    _Block(flights).fly(*arguments)
     return Ensemble(moments, _NO_COUNTS, blank, blank, record, end, mean)
 
 
@@ -270,14 +309,14 @@ def fly(plan: Plan, wind: Wind, control, reference, flights, threads=1, progress
     for _ in range(threads):
         shelf.put(np.zeros((outputs, SEEN, BINS), np.int32))
     nothing = np.empty((0, outputs, SEEN))
+    stop = Event()
 
     def block(first):
         used = min(BLOCK, flights - first)
         moments, counts = np.zeros((outputs, MOMENTS)), shelf.get()
         part = slice(first, first + used)
-        fly_block(
-            first, used, *plan, *wind, control, reference, nothing, moments, low, width, counts, end[part], mean[part]
-        )
+        arguments = first, used, *plan, *wind, control, reference, nothing, moments, low, width, counts
+        _Block(used).fly(*arguments, end[part], mean[part], stop=stop)
         shelf.put(counts)
         return moments
 
@@ -285,15 +324,20 @@ def fly(plan: Plan, wind: Wind, control, reference, flights, threads=1, progress
         waiting: deque[Future[np.ndarray[Any, Any]]] = deque()
         ahead = iter(range(0, flights, BLOCK))
         done = 0
-        while True:
-            while len(waiting) < 2 * threads and (first := next(ahead, None)) is not None:
-                waiting.append(pool.submit(block, first))
-            if not waiting:
-                break
-            total += waiting.popleft().result()  # in order of flights, whoever finished first
-            done = min(done + BLOCK, flights)
-            if progress:
-                progress(done)
+        try:
+            while True:
+                while len(waiting) < 2 * threads and (first := next(ahead, None)) is not None:
+                    waiting.append(pool.submit(block, first))
+                if not waiting:
+                    break
+                total += waiting.popleft().result()  # in order of flights, whoever finished first
+                done = min(done + BLOCK, flights)
+                if progress:
+                    progress(done)
+        except BaseException:  # Ctrl-C: the threads come to their end at once
+            stop.set()
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
     counts = np.zeros((outputs, SEEN, BINS), np.int64)
     for _ in range(threads):
         counts += shelf.get()

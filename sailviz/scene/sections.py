@@ -127,12 +127,43 @@ class Limits(Section):
     flights: Annotated[int, Field(ge=1, le=1_000_000_000)] = 10_000_000
 
 
+PlotWord = Literal[
+    "distance",
+    "speed",
+    "height",
+    "angle",
+    "clock",
+    "earth",
+    "push",
+    "inclination",
+    "eccentricity",
+    "altitude",
+    "approximation",
+    "switching_function",
+    "plasma_force",
+    "plasma_density",
+    "mean_ion_mass",
+    "tether_current",
+    "tether_voltage",
+    "tether_power",
+    "tether_tilt",
+    "air_density",
+    "air_drag",
+    "solar_flux",
+    "sunlit_fraction",
+    "solar_wind_pressure",
+    "thrust_voltage",
+    "irradiance",
+    "electrochromic_state",
+]
+
+
 class Recording(Section):
-    """How the recording plays, 30 s long (40 s round a planet) where nothing else is said, and which curves are in
-    front, most telling first: words of curves that every flight has, or columns of the environment."""
+    """How the recording plays: how long, 30 s (40 s in a low orbit) where nothing is said; and which curves are in
+    front, most telling first, of those that the flight has. Without them those that vary most are."""
 
     play_duration: Annotated[Time, POSITIVE] | None = None
-    plots: tuple[str, ...] = ()
+    plots: tuple[PlotWord, ...] = ()
 
 
 OfRows = Literal["start", "end", "min", "max", "mean", "drift"]

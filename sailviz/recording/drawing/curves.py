@@ -112,13 +112,15 @@ class Curves:
             if plot.handy:
                 plot, values = self._in_handy_unit(plot, values)
             worth = max((score(values[:, k], plot.natural, plot.bonus) for k in range(values.shape[1])), default=0.0)
-            wanted = plot.key in asked
-            if plot.key in RARE and not wanted and plot.key.split("_")[0] not in about:
+            place = next((k for k, word in enumerate(asked) if plot.is_called(word)), None)
+            wanted = place is not None
+            rare = plot.rare or (plot.key in RARE and plot.key.split("_")[0] not in about)
+            if rare and not wanted:
                 continue
             if worth < SHOWN_FROM and not wanted:
                 continue
             view = self._write(plot, index, values)
-            found.append((1e3 - asked.index(plot.key) if wanted else worth, view))
+            found.append((worth if place is None else 1e3 - place, view))
         return [view for _, view in sorted(found, key=lambda pair: -pair[0])]
 
     def _in_handy_unit(self, plot: Plot, values: np.ndarray) -> tuple[Plot, np.ndarray]:
@@ -207,6 +209,9 @@ class Curves:
         for place, (name, k) in enumerate(kept):
             low, high = swing.low[filled, k], swing.high[filled, k]
             color, path = list(plot.colors[k]), f"{plot.path}/{place}"
+            if plot.swings == "mean":
+                self._write_lines(f"{path}/mean", index, means[place][:, None], [name], [color])
+                continue
             band = rr.Measurements.from_fields(
                 colors=[style.dim(color, BAND_SHADE)], widths=[0.0], names=[f"{name}, least to largest"]
             )

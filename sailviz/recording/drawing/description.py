@@ -22,7 +22,8 @@ def about(setting: Setting, notes: Iterable[str] = (), steady: Iterable[str] = (
     ends = ["Steady all along: " + " · ".join(f"**{words}**" for words in constants)] if len(constants) > 1 else []
     ends += [f"*{aside}*"] if aside else []
     table = scoreboard(setting) if setting.ensembles else []
-    hints = [f"- {hint.strip()}" for hint in (*setting.look_for, *notes)]
+    told = () if len(setting.ensembles) > 1 else (*setting.look_for, *notes)  # the table takes their room
+    hints = [f"- {hint.strip()}" for hint in told]
     parts = [[setting.about.strip()], table, hints, *([words] for words in ends)]
     return "\n\n".join("\n".join(part) for part in parts if part)
 

@@ -248,9 +248,10 @@ def log_globe_eye(picture: Picture, story: Story) -> Space:
 
 
 def from_afar(globe: Space) -> Space:
-    """The globe, large."""
+    """The globe, large, and from where the Sun shines."""
     camera = globe.camera
-    return Space(Camera("From afar", camera.origin, camera.position), globe.contents)
+    contents = tuple(rule for rule in globe.contents if "sunlight" not in rule)
+    return Space(Camera("From afar", camera.origin, camera.position), contents)
 
 
 def riding_along(story: Story) -> Space:
@@ -260,7 +261,13 @@ def riding_along(story: Story) -> Space:
     if sun is not None:
         side = 1.0 if to_frame(samples.axes, unit(sun))[:, 2].mean() >= SEASON_MISS else -1.0
     eye = EYE * [1.0, 1.0, side]
-    contents = ("+ /world/**", "- /world/craft/**", "- /world/plane/**", "- /world/night/umbra")
+    contents = (
+        "+ /world/**",
+        "- /world/craft/**",
+        "- /world/plane/**",
+        "- /world/night/umbra",
+        "- /world/night/sunlight/**",
+    )
     return Space(Camera(riding_name(story), "/world/rtn", tuple(eye.tolist()), TARGET, (1.0, 0.0, 0.0)), contents)
 
 

@@ -9,10 +9,11 @@ import rerun as rr
 
 from sailviz.recording.drawing.log import Picture
 from sailviz.recording.drawing.phrases import digits, moments, push_words
-from sailviz.recording.drawing.story import Story
+from sailviz.recording.drawing.story import GROUND, Story
 from sailviz.run.arrays import EnsembleStatistics
 
 ROWS = 700
+OVAL = 0.08  # difference of the highest and the lowest altitude, of the mean one, from which both are told
 BETWEEN = " · "
 
 
@@ -75,9 +76,16 @@ def angle_words(story: Story) -> list[str]:
 
 
 def altitude_words(story: Story) -> list[str]:
-    """Of the drawn row: near re-entry the height above ground, else the mean one of the orbit, and of an ellipse its
-    lowest and highest."""
-    return [f"{high:.0f} km up" for high in (story.altitude / 1e3).tolist()]
+    """Of the drawn row: of an ellipse its lowest and highest, else the mean one, and near re-entry the height over the
+    ground."""
+    e, radius = story.samples.run.elements, story.setting.body.radius
+    low = e.semi_major_axis * (1 - e.eccentricity) - radius
+    high = e.semi_major_axis * (1 + e.eccentricity) - radius
+    oval = (high - low > OVAL * story.altitude) & (low > GROUND)
+    return [
+        f"{a / 1e3:.0f} to {b / 1e3:.0f} km up" if long else f"{mean / 1e3:.0f} km up"
+        for a, b, long, mean in zip(low.tolist(), high.tolist(), oval.tolist(), story.altitude.tolist(), strict=True)
+    ]
 
 
 def drag_words(story: Story) -> list[str]:

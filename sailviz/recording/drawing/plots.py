@@ -4,7 +4,7 @@ showing."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,9 +34,14 @@ class Plot:
     bonus: float = 1.0
     from_zero: bool = False
     steady: str = ""  # how a constant one is told, with {} for the number; "" where it is not worth telling
+    rare: bool = False  # shown only where the scene asks for it
     handy: bool = False  # in m/s2; its unit is chosen when the largest value of the run is known
-    swings: bool = True  # a swing is that of the craft's own revolution
+    swings: str = "band"  # how a swing within a revolution is shown: "band", its "mean" alone, or as it is, ""
     noise: float = 0.0  # a change below it is rounding, and is not shown as a change
+
+    def is_called(self, word: str) -> bool:
+        """Whether a scene means it by a word: its key, with or without the unit at its end."""
+        return self.key == word or (self.key.startswith(f"{word}_"))
 
     @property
     def path(self) -> str:
@@ -132,8 +137,7 @@ def plots_of(first: Run, frame: Frame, craft: CraftDrawing) -> list[Plot]:
     found = [altitude_plot(first)] if low else open_space_plots(first, frame, craft)
     if craft.pushes and not (low and "plasma_force_N_m" in first.environment):
         found.append(push_plot(craft))
-    if not low:
-        found += orbit_plots()
+    found += [replace(plot, rare=low) for plot in orbit_plots()]
     if first.approximations:
         found.append(approximation_plot(first))
     for name, values in first.environment.items():
@@ -213,7 +217,7 @@ def open_space_plots(first: Run, frame: Frame, craft: CraftDrawing) -> list[Plot
                 natural=frame.origin_radius,
                 bonus=0.5,
                 from_zero=True,
-                swings=False,
+                swings="",
             )
         )
     return found
@@ -263,7 +267,17 @@ def altitude_plot(first: Run) -> Plot:
     if analytic:
         names = (*names, "closed form")
     colors = tuple(style.QUANTITY["analytic" if name == "closed form" else name] for name in names)
-    return Plot("altitude", "Altitude [km]", names, colors, values, natural=-0.3, bonus=1.5, steady="{:.0f} km up")
+    return Plot(
+        "altitude",
+        "Altitude [km]",
+        names,
+        colors,
+        values,
+        natural=-0.3,
+        bonus=1.5,
+        steady="{:.0f} km up",
+        swings="mean",
+    )
 
 
 def push_plot(craft: CraftDrawing) -> Plot:

@@ -110,6 +110,13 @@ def altitude(f, row, value):
     told(value, heights(f)[row] / 1e3)
 
 
+@part(r"(\d+) to (\d+) km up")
+def ellipse(f, row, low, high):
+    a, e = f.truth.elements["semi_major_axis_m"][row], f.truth.elements["eccentricity"][row]
+    told(low, (a * (1 - e) - f.truth.radius) / 1e3)
+    told(high, (a * (1 + e) - f.truth.radius) / 1e3)
+
+
 def heights(f) -> np.ndarray:
     """m: the mean altitude, below 200 km the height over the ground."""
     mean = f.truth.environment.get("mean_altitude_m", f.truth.elements["semi_major_axis_m"] - f.truth.radius)

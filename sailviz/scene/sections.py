@@ -163,7 +163,7 @@ class Recording(Section):
     front, most telling first, of those that the flight has. Without them those that vary most are."""
 
     play_duration: Annotated[Time, POSITIVE] | None = None
-    plots: tuple[PlotWord, ...] = ()
+    plots: list[PlotWord] = []
 
 
 OfRows = Literal["start", "end", "min", "max", "mean", "drift"]

@@ -56,7 +56,7 @@ def setting_of(p: Plan, planets, rows, ensembles=()) -> Setting:
         accuracy=_accuracy(p),
         identity=p.identity,
         play_duration=scene.recording.play_duration,
-        plots=scene.recording.plots,
+        plots=tuple(scene.recording.plots),
         shells=_shells(p),
         ensembles=ensembles,
     )

@@ -9,7 +9,7 @@ import numpy as np
 from sailviz.environment import atmosphere, ionosphere
 from sailviz.propagate.dynamics import loses_mass
 from sailviz.propagate.gauss_jackson_coefficients import LAGS
-from sailviz.propagate.gauss_jackson_steps import ANGLE, LARGEST_ECCENTRICITY
+from sailviz.propagate.gauss_jackson_steps import ANGLE, LARGEST_ECCENTRICITY, SMALLEST_TOLERANCE
 
 DOP853, GAUSS_JACKSON = "dop853", "gauss-jackson"
 FEWEST_TURNS = 50  # below, DOP853 is as accurate and the gain is microseconds
@@ -27,9 +27,9 @@ class Choice:
     possible: bool = True
 
 
-def choose(model, position, velocity, duration, breaks=(0.0,), wanted="auto") -> Choice:
+def choose(model, position, velocity, duration, breaks=(0.0,), wanted="auto", tolerance=1e-10) -> Choice:
     """The integrator for a run of duration s from position m and velocity m/s, whose thrust factor has kinks at breaks
-    s. wanted : "auto", "dop853" or "gauss-jackson". ValueError for another word.
+    s. wanted : "auto", "dop853" or "gauss-jackson"; tolerance : of the distance. ValueError for another word.
 
     Looks at the osculating orbit at the start alone: an orbit that becomes eccentric later is finished by the DOP853
     steps of gauss_jackson itself, correctly but no faster than by DOP853.
@@ -46,6 +46,10 @@ def choose(model, position, velocity, duration, breaks=(0.0,), wanted="auto") ->
     e = float(np.linalg.norm(((v @ v) * r - (r @ v) * v) / mu - r / size))
     if loses_mass(model):
         obstacle = "the thruster burns propellant, and the multistep method keeps the mass constant"
+    elif tolerance < SMALLEST_TOLERANCE:
+        obstacle = (
+            f"its rounding reaches {SMALLEST_TOLERANCE:g} of the distance at best, not a tolerance of {tolerance:g}"
+        )
     elif not axis > 0.0:
         obstacle = "the orbit is not bound"
     elif e >= LARGEST_ECCENTRICITY:

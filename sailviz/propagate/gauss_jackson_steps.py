@@ -21,6 +21,9 @@ from sailviz.propagate.stepping import NEW, W, Y
 
 ANGLE = 0.067  # rad that the craft turns at periapsis in one step
 LONGEST, SHORTEST = 1.025, 0.8  # bounds of a step over what the rule says now; outside them it is chosen anew
+ERROR = 4e-12  # of the distance, at steps of ANGLE: that of the quintic between them, and so with the sixth power
+LOOSEST, TIGHTEST = 0.6, 1.7  # refinement: beyond, eccentric orbits lose stability within a month, and rounding rules
+SMALLEST_TOLERANCE = 1e-13  # that TIGHTEST is good for
 CHECK = 32  # steps between two looks at the rule
 LARGEST_ECCENTRICITY = 0.15  # beyond, and where other forces exceed STRONG of gravity, DOP853 makes the steps
 STRONG = 0.02
@@ -99,6 +102,12 @@ def angular_rate(y, mu):
     v2 = y[3] * y[3] + y[4] * y[4] + y[5] * y[5]
     e = np.sqrt(max(0.0, 1.0 + p * (v2 / mu - 2.0 / r)))
     return np.sqrt(mu / (p * p * p)) * (1.0 + e) ** 2, e
+
+
+def refinement_for(tolerance: float) -> float:
+    """By what to divide the step ANGLE so that positions are within a tolerance of the distance for twenty revolutions
+    and, but for rounding, a thousand. The longest steps make 1e-10; a wider tolerance gets that too."""
+    return float(min(max((ERROR / tolerance) ** (1 / 6), LOOSEST), TIGHTEST))
 
 
 @called

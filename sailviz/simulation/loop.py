@@ -13,21 +13,20 @@ from sailviz import elements as orbital
 from sailviz import frames
 from sailviz.constants import DAY
 from sailviz.errors import PropagationError, TimeLimitError
-from sailviz.propagate import dop853, dynamics, gauss_jackson, stepping
-from sailviz.propagate.choice import DOP853, GAUSS_JACKSON
+from sailviz.propagate import dynamics, stepping
 from sailviz.propagate.patience import Patience
 from sailviz.propulsion.devices import CALLED, THRUSTER
 from sailviz.run.arrays import Attitude, EnsembleStatistics, Event, Run, Setting, Thrust, join
 from sailviz.scene.loading import SceneSource, load_scene
 from sailviz.scene.sections import Propagation
 from sailviz.simulation.environment_columns import observe, voltages
+from sailviz.simulation.integration import INTEGRATORS, begun
 from sailviz.simulation.metadata import bodies, planets_in_view, setting_of
 from sailviz.simulation.no_progress import too_many, too_short, too_slow
 from sailviz.simulation.plan import Plan, plan
 
 BLOCK_ROWS = 16_384  # a recording takes this many at once
 DEFAULT_OUTPUTS = 1000
-INTEGRATORS = {DOP853: dop853, GAUSS_JACKSON: gauss_jackson}
 
 
 def simulate(
@@ -115,7 +114,7 @@ def _blocks(
 ) -> Iterator[Run]:
     output = OutputTimes(p.scene.propagation)
     ensembles = _ensembles(p, output) if drawn or any(item.ensemble for item in p.scene.expect) else ()
-    state = INTEGRATORS[p.choice.integrator].start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
+    state = begun(p)
     setting: Setting | None = None
     planets: dict[str, np.ndarray] = {}
     off_time = np.inf
@@ -133,7 +132,7 @@ def _blocks(
         if len(filled.times):
             if setting is None:
                 planets = planets_in_view(p) if drawn else {}
-                setting = setting_of(p, planets, output.rows, ensembles)
+                setting = setting_of(p, planets, output.rows, ensembles, drawn)
             block = _observed(p, setting, filled.times, filled.states, first, off_time)
             yield replace(
                 block,

@@ -13,10 +13,10 @@ from sailviz import elements as orbital
 from sailviz import ephemeris
 from sailviz.environment import ionosphere
 from sailviz.propagate import dop853
-from sailviz.propagate.choice import GAUSS_JACKSON
 from sailviz.propagate.patience import Patience
 from sailviz.run.arrays import Reference, Setting, Shell
 from sailviz.scene.start import DesignedStart
+from sailviz.simulation.accuracy import accuracy_in_words
 from sailviz.simulation.bodies import epoch_of
 from sailviz.simulation.device import craft
 from sailviz.simulation.environment import ENVIRONMENT, drawn_bodies
@@ -29,7 +29,8 @@ MOST_STEPS_AHEAD = 300_000  # of the coarse run that tells which planets come in
 SHELL_ANGLES, SHELL_STEP = 120, 25e3  # round the orbit; m between altitudes
 
 
-def setting_of(p: Plan, planets, rows, ensembles=()) -> Setting:
+def setting_of(p: Plan, planets, rows, ensembles=(), measure=True) -> Setting:
+    """measure : whether to find out how accurate the run is."""
     scene = p.scene
     duration = scene.propagation.duration
     return Setting(
@@ -53,24 +54,12 @@ def setting_of(p: Plan, planets, rows, ensembles=()) -> Setting:
             "numpy": np.__version__,
             "numba": numba.__version__,
         },
-        accuracy=_accuracy(p),
+        accuracy=accuracy_in_words(p, measure),
         identity=p.identity,
         play_duration=scene.recording.play_duration,
         plots=tuple(scene.recording.plots),
         shells=_shells(p),
         ensembles=ensembles,
-    )
-
-
-def _accuracy(p: Plan) -> str:
-    if p.choice.integrator == GAUSS_JACKSON:
-        return (
-            "Summed Gauss-Jackson, fixed step, compensated sums, quintic output between the steps, float64; started "
-            "and restarted by Dormand-Prince 8(5,3). About 1e-9 of the radius in a year under smooth forces."
-        )
-    return (
-        f"Dormand-Prince 8(5,3) with dense output, relative tolerance {p.scene.propagation.tolerance:g} per step "
-        "(position against distance, velocity against the larger of speed and circular speed), float64."
     )
 
 

@@ -154,7 +154,7 @@ def _integrator(
 ) -> Choice:
     """Which integrator a scene gets. SceneError where the one asked for cannot do it."""
     run = scene.propagation
-    found = choose(model, position, velocity, run.duration, breaks, run.integrator)
+    found = choose(model, position, velocity, run.duration, breaks, run.integrator, run.tolerance)
     if not found.possible:
         raise SceneError([Fault("propagation.integrator", f"{found.reason}.")], scene.source)
     return found

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import sailviz
-from sailviz.propagate import stepping
+from sailviz.propagate import dop853, stepping
 from sailviz.shipped import shipped_scenes
-from sailviz.simulation.loop import INTEGRATORS
+from sailviz.simulation.integration import INTEGRATORS, begun
 from sailviz.simulation.plan import plan
 
 TURNS = 20
@@ -26,7 +26,11 @@ def span(p):
 def fly(p, times, tolerance, largest_step, integrator):
     """Positions (3, n) at times (n,) as far as the flight goes."""
     method = INTEGRATORS[integrator]
-    s = method.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
+    s = (
+        begun(p)
+        if integrator == p.choice.integrator
+        else dop853.start(0.0, p.position, p.velocity, p.mass, len(p.names))
+    )
     out, factors = np.full((6, len(times)), np.nan), p.schedule.factors.copy()
     arguments = (p.schedule.breaks, factors, p.watch, times, out, p.scene.propagation.duration)
     while method.advance(s, p.model, *arguments, tolerance, largest_step) == stepping.EVENTS_FULL:

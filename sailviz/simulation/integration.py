@@ -1,0 +1,20 @@
+"""The integrator of a plan, begun as its scene asks."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sailviz.propagate import dop853, gauss_jackson
+from sailviz.propagate.choice import DOP853, GAUSS_JACKSON
+from sailviz.propagate.gauss_jackson_steps import refinement_for
+from sailviz.simulation.plan import Plan
+
+INTEGRATORS = {DOP853: dop853, GAUSS_JACKSON: gauss_jackson}
+
+
+def begun(p: Plan, finer: float = 1.0) -> Any:
+    """An integration at the start of a plan. finer : shortens steps that are equal, beyond what the tolerance asks."""
+    given = (0.0, p.position, p.velocity, p.mass, len(p.names))
+    if p.choice.integrator == GAUSS_JACKSON:
+        return gauss_jackson.start(*given, refinement=finer * refinement_for(p.scene.propagation.tolerance))
+    return dop853.start(*given)

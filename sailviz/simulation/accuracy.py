@@ -34,7 +34,8 @@ class Measured(NamedTuple):
 
 
 def measured(p: Plan) -> Measured | None:
-    """The error of a plan's flight over its beginning; None where its steps cannot be made finer."""
+    """The error of a plan's flight over its beginning; None where steps half as long would only round,
+    or where few of them lead nowhere."""
     run = p.scene.propagation
     finer = max(run.tolerance / 2**ORDER, FINEST)
     if p.choice.integrator != GAUSS_JACKSON and finer > 0.1 * run.tolerance:
@@ -42,17 +43,20 @@ def measured(p: Plan) -> Measured | None:
     mu, r = p.body.mu, float(np.linalg.norm(p.position))
     axis = 1 / (2 / r - float(p.velocity @ p.velocity) / mu)
     span = run.duration if axis <= 0 else min(run.duration, TURNS * 2 * np.pi * np.sqrt(axis**3 / mu))
-    times = np.linspace(0.0, span, ROWS + 1)
     kept = p.model.tables.copy() if p.schedule.law is not None else None
     longest = run.largest_step or np.inf
-    coarse, steps, accepted = _flown(p, times, run.tolerance, longest, 1.0, MOST_STEPS)
+    times = np.linspace(0.0, span, ROWS + 1)
+    coarse, accepted, rejected, reached = _flown(p, times, run.tolerance, longest, 1.0, MOST_STEPS)
+    if coarse.shape[1] < ROWS / 4 and reached > 0.0:  # over what so many steps do reach
+        times = np.linspace(0.0, reached, ROWS + 1)
+        coarse, accepted, rejected, _ = _flown(p, times, run.tolerance, longest, 1.0, MOST_STEPS)
     if accepted:  # where cells of tables decide on the steps, and no tolerance
-        longest = min(0.5 * longest, 0.5 * float(times[coarse.shape[1] - 1]) / accepted)
-    fine, _, _ = _flown(p, times[: coarse.shape[1]], finer, longest, 2.0, 6 * steps)
+        longest = 0.5 * min(longest, float(times[coarse.shape[1] - 1]) / accepted)
+    fine, _, _, _ = _flown(p, times[: coarse.shape[1]], finer, longest, 2.0, 6 * (accepted + rejected))
     if kept is not None:
         p.model.tables[:] = kept  # where a voltage controller notes what it does
     rows = fine.shape[1]
-    if not rows:
+    if rows < 2:
         return None
     away = np.linalg.norm(coarse[:, :rows] - fine[:, :rows], axis=0) / np.linalg.norm(fine[:, :rows], axis=0)
     return Measured(float(away.max()), float(times[rows - 1]))
@@ -60,9 +64,9 @@ def measured(p: Plan) -> Measured | None:
 
 def _flown(
     p: Plan, times: np.ndarray, tolerance: float, longest: float, finer: float, most_steps: int
-) -> tuple[np.ndarray, int, int]:
-    """Positions (3, n) m at the first of the times (m,) s, the steps tried and those accepted: until the flight ends,
-    or that many have been tried."""
+) -> tuple[np.ndarray, int, int, float]:
+    """Positions (3, n) m at the first of the times (m,) s, the steps accepted and rejected, the time reached, s: until
+    the flight ends, or so many steps have been tried."""
     method, state = INTEGRATORS[p.choice.integrator], begun(p, finer)
     model = p.model._replace(parameters=p.model.parameters.copy())
     out, end = np.empty((6, len(times))), p.scene.propagation.duration
@@ -72,8 +76,7 @@ def _flown(
         patience.next_piece(max(1, most_steps - sum(stepping.statistics(state))))  # whatever the time that they take
         status = method.advance(state, model, *given, patience)
         stepping.drain_events(state)
-    accepted, rejected = stepping.statistics(state)
-    return out[:3, : stepping.rows_done(state)], accepted + rejected, accepted
+    return out[:3, : stepping.rows_done(state)], *stepping.statistics(state), stepping.time(state)
 
 
 def accuracy_in_words(p: Plan, measure: bool) -> str:
@@ -93,7 +96,7 @@ def accuracy_in_words(p: Plan, measure: bool) -> str:
         return how
     found = measured(p)
     if found is None:
-        return f"{how} Steps so short that shorter ones would only round."
+        return f"{how} Its error was not measured."
     whole = found.until >= p.scene.propagation.duration * (1 - 1e-12)
     span = "all of the flight" if whole else f"the first {duration(found.until)}"
     return f"{how} Within {rounded_up(found.error)} of the distance of a flight in steps half as long, over {span}."

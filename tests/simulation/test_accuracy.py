@@ -9,6 +9,7 @@ import pytest
 
 import sailviz
 from sailviz.errors import SceneError
+from sailviz.shipped import shipped_scenes
 from sailviz.simulation.accuracy import measured, rounded_up
 from sailviz.simulation.plan import plan
 
@@ -47,6 +48,14 @@ def test_a_long_flight_says_how_far_it_was_measured():
     run = next(iter(sailviz.simulate_blocks("deorbit/estcube-2-maximum", block_rows=20)))
     hours = float(re.search(r"over the first (\S+) h\.$", run.setting.accuracy)[1])
     assert 5 < hours < 24
+
+
+@pytest.mark.parametrize("name", sorted(shipped_scenes()))
+def test_the_error_of_every_scene_is_measured(name):
+    p = plan(sailviz.load_scene(name))
+    found = measured(p)
+    assert 0.0 <= found.error < 1e-8
+    assert found.until > 0.0
 
 
 @pytest.mark.parametrize("name", ["wind/held-displaced", "wind/voltage-limits", "deorbit/power-limited"])

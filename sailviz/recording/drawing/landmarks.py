@@ -15,12 +15,14 @@ import rerun as rr
 from sailviz.constants import AU, MU_SUN
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.log import Color, Picture, f4
+from sailviz.recording.drawing.names import Names
 from sailviz.recording.drawing.phrases import on_day
 from sailviz.recording.drawing.samples import orbits
 from sailviz.recording.drawing.story import Story
 from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Event, Reference
 
+MARK, SUN, PLANET, CRAFT, TARGET_RING, RING = range(6)  # what matters more has the lower rank
 MET = 0.12  # relative distance from a planet's orbit within which a flight starts or ends at it
 LARGER = 1.004  # a ring beside the trail: lines on one another tear
 RAISED = 0.085  # of S: events' names stand above their places, planets' hang below
@@ -99,14 +101,14 @@ def nominal_words(found: Landmarks) -> str:
     return f"No date is given: {names} placed where this flight would meet {'it' if ' and ' not in names else 'them'}."
 
 
-def log_landmarks(picture: Picture, story: Story, found: Landmarks, eye: np.ndarray) -> None:
-    """Write /world/planets, /world/names and /world/marks, seen from the direction `eye` (3,)."""
-    log_planets(picture, story, found)
-    log_ring_names(picture, story, found, eye)
-    log_marks(picture, story, eye)
+def log_landmarks(picture: Picture, story: Story, found: Landmarks, eye: np.ndarray, names: Names) -> None:
+    """Write /world/planets and /world/marks, seen from the direction `eye` (3,), and say what has which name."""
+    log_planets(picture, story, found, names)
+    add_ring_names(story, found, eye, names)
+    log_marks(picture, story, eye, names)
 
 
-def log_planets(picture: Picture, story: Story, found: Landmarks) -> None:
+def log_planets(picture: Picture, story: Story, found: Landmarks, names: Names) -> None:
     """Bodies that move, with their names, and rings."""
     for name, ring in found.rings.items():
         color = style.dim(style.planet_color(name), 0.5)
@@ -117,26 +119,25 @@ def log_planets(picture: Picture, story: Story, found: Landmarks) -> None:
         picture.log_static(f"/world/planets/{name}/body", dot)
         picture.log_columns(f"/world/planets/{name}/body", story.index, rr.Points3D.columns(positions=f4(place)))
         if np.linalg.norm(place, axis=1).max() >= style.NAMES_FROM * story.reach:
-            picture.log_label_style(f"/world/names/{name}", color, name)
-            picture.log_labels(f"/world/names/{name}", story.index, place)
+            names.add(f"/world/names/{name}", name, color, place, PLANET)
 
 
-def log_ring_names(picture: Picture, story: Story, found: Landmarks, eye: np.ndarray) -> None:
+def add_ring_names(story: Story, found: Landmarks, eye: np.ndarray, names: Names) -> None:
     """Each ring's name where it is farthest on the screen from everything that has another."""
     moments = [0, len(story.time) // 2, -1]
     avoid = [np.zeros(3), *story.position[moments]]
     avoid += [place[k] for place in found.places.values() for k in moments]
-    names: list[tuple[str, str, Color, np.ndarray]] = []
+    rings: list[tuple[str, str, Color, np.ndarray]] = []
     if found.target is not None:
         line = np.asarray(found.target.points, float) / found.length
-        names.append(("target", target_words(story, found.target), style.TARGET_NAME, line))
+        rings.append(("target", target_words(story, found.target), style.TARGET_NAME, line))
     for name, ring in found.rings.items():
         if name not in found.places and np.linalg.norm(ring, axis=1).mean() >= 0.3 * story.reach:
-            names.append((name, f"orbit of {name}", style.dim(style.planet_color(name), 0.8), ring))
-    for key, words, color, ring in names:
+            rings.append((name, f"orbit of {name}", style.dim(style.planet_color(name), 0.8), ring))
+    for key, words, color, ring in rings:
         spot = farthest_on_screen(ring[::4], np.array(avoid), eye)
         avoid.append(spot)
-        picture.log_label(f"/world/names/orbits/{key}", words, color, spot)
+        names.add(f"/world/names/orbits/{key}", words, color, spot, TARGET_RING if key == "target" else RING)
 
 
 def target_words(story: Story, target: Reference) -> str:
@@ -203,7 +204,7 @@ def reaches(story: Story, target: Reference) -> bool:
     return bool(gaps.max() < THERE * story.reach)
 
 
-def log_marks(picture: Picture, story: Story, eye: np.ndarray) -> None:
+def log_marks(picture: Picture, story: Story, eye: np.ndarray, names: Names) -> None:
     """Dots and names at the start, at the end and at one or two events between; a ring has neither start nor end."""
     if story.ring or np.linalg.norm(story.position - story.position[0], axis=1).max() < 1e-2 * story.reach:
         return
@@ -216,4 +217,4 @@ def log_marks(picture: Picture, story: Story, eye: np.ndarray) -> None:
     dots = np.array([place for _, place in marks])
     picture.log_static("/world/marks", rr.Points3D(f4(dots), radii=points(style.MARK_DOT), colors=[style.CRAFT]))
     for number, (words, place) in enumerate(marks):
-        picture.log_label(f"/world/marks/{number}", words, style.CRAFT, place + rise)
+        names.add(f"/world/marks/{number}", words, style.CRAFT, place + rise, MARK)

@@ -31,4 +31,3 @@ def log_sun(picture: Picture) -> None:
         "/world/sun/glow",
         rr.GaussianSplats3D([[0, 0, 0]] * 3, scales=[[r] * 3 for r, _ in glow], colors=[c for _, c in glow]),
     )
-    picture.log_label("/world/sun/name", "Sun", style.SUN, (0, 0, -2.1))

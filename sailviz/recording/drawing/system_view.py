@@ -16,9 +16,18 @@ from sailviz.recording.drawing.cameras import Camera
 from sailviz.recording.drawing.craft import Glow
 from sailviz.recording.drawing.fence import Fence, fence_of, log_fence
 from sailviz.recording.drawing.ghosts import log_ghosts
-from sailviz.recording.drawing.landmarks import Landmarks, landmarks_of, log_landmarks, nominal_words, reaches
+from sailviz.recording.drawing.landmarks import (
+    CRAFT,
+    SUN,
+    Landmarks,
+    landmarks_of,
+    log_landmarks,
+    nominal_words,
+    reaches,
+)
 from sailviz.recording.drawing.layout import ALL, SO_FAR, TO_COME, Space, Span
 from sailviz.recording.drawing.log import Picture, f4
+from sailviz.recording.drawing.names import Names
 from sailviz.recording.drawing.planet import Planet, about_axis
 from sailviz.recording.drawing.samples import orbits
 from sailviz.recording.drawing.sky import log_stars, log_sun
@@ -39,12 +48,12 @@ LIFTED_FILM, LIFTED_WHEEL = (-24.0, -14.0, -4.0, 8.0, 20.0, 26.0), (20.0, 24.0, 
 
 def log_system(picture: Picture, story: Story) -> tuple[list[Space], dict[str, Span], str]:
     """Write /world -> its views, the spans that they show of what is past and to come, and what is made up."""
-    found, fence = landmarks_of(story), fence_of(story)
+    found, fence, names = landmarks_of(story), fence_of(story), Names(story)
     size = craft_size(story)
-    log_backdrop(picture, story)
+    log_backdrop(picture, story, names)
     log_references(picture, story, found)
-    log_craft(picture, story, size)
-    log_approximations(picture, story)
+    log_craft(picture, story, size, names)
+    log_approximations(picture, story, names)
     spans = log_trail(picture, story)
     if fence is not None:
         log_fence(picture, story, fence)
@@ -54,8 +63,9 @@ def log_system(picture: Picture, story: Story) -> tuple[list[Space], dict[str, S
     camera, turn = main_camera(story, found, fence, size)
     if np.any(turn):
         picture.log_pose("/world/pan", story.index, quaternion=about_axis(turn))
-    log_landmarks(picture, story, found, first_eye(camera))
-    log_push_name(picture, story, size, turned(np.tile(first_eye(camera), (len(turn), 1)), -turn))
+    log_landmarks(picture, story, found, first_eye(camera), names)
+    add_push_name(story, size, turned(np.tile(first_eye(camera), (len(turn), 1)), -turn), names)
+    names.write(picture, camera, turn)
     if story.frame.sparse:
         log_ladder(picture, story)
         spans["/world/ladder"] = ALL
@@ -78,7 +88,7 @@ def craft_size(story: Story) -> float:
     return story.craft.size * story.reach * among
 
 
-def log_backdrop(picture: Picture, story: Story) -> None:
+def log_backdrop(picture: Picture, story: Story, names: Names) -> None:
     """Stars, the centre and the plane x, y."""
     picture.log_static("/world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
     log_stars(picture, "/world/stars", style.STARS_RADIUS * story.reach)
@@ -86,6 +96,8 @@ def log_backdrop(picture: Picture, story: Story) -> None:
     if story.frame.sun:
         log_sun(picture)
         picture.log_scale("/world/sun", style.SUN_RADIUS * story.reach)
+        below = np.array([0.0, 0.0, -2.1 * style.SUN_RADIUS * story.reach])
+        names.add("/world/names/Sun", "Sun", style.SUN, below, SUN)
     elif body.radius > 0:
         Planet(picture, story.setting, "Sun" in story.samples.run.bodies).add(story.samples)
     else:
@@ -123,7 +135,7 @@ def log_reference(picture: Picture, reference: Reference, length: float) -> None
     picture.log_lines(f"/world/references/{name}", [1.004 * line if target else line], color, style.WIDTH[width])
 
 
-def log_craft(picture: Picture, story: Story, size: float) -> None:
+def log_craft(picture: Picture, story: Story, size: float, names: Names) -> None:
     """The craft in its attitude, its push, the line from the Sun."""
     samples, index, craft = story.samples, story.index, story.craft
     picture.log_pose("/world/craft", index, translation=samples.position)
@@ -145,22 +157,19 @@ def log_craft(picture: Picture, story: Story, size: float) -> None:
         picture.log_strip_style("/world/height", style.HEIGHT, style.WIDTH["helper"])
         foot = samples.position * [1.0, 1.0, 0.0]
         picture.log_strips("/world/height", index, np.stack([foot, samples.position], 1))
-    if size == 0 or story.setting.ensembles:
-        return
-    if story.most <= 0:
-        name = story.setting.craft.label or "craft"
-        picture.log_label("/world/craft/name", name, style.CRAFT, (0.0, 0.0, -0.6 * size))
+    if story.most <= 0 and not story.setting.ensembles:
+        below = samples.position - [0.0, 0.0, 0.6 * size]
+        names.add("/world/names/craft", story.setting.craft.label or "craft", style.CRAFT, below, CRAFT)
 
 
-def log_approximations(picture: Picture, story: Story) -> None:
+def log_approximations(picture: Picture, story: Story, names: Names) -> None:
     """Where other answers to the same question put the craft."""
     for name, position in story.samples.run.approximations.items():
         path, place = f"/world/approximation/{word(name)}", position / story.frame.unit
         dot = rr.Points3D.from_fields(radii=points(4.2), colors=[style.APPROXIMATION])
         picture.log_static(f"{path}/place", dot)
         picture.log_columns(f"{path}/place", story.index, rr.Points3D.columns(positions=f4(place)))
-        picture.log_label_style(f"{path}/name", style.APPROXIMATION, name)
-        picture.log_labels(f"{path}/name", story.index, place)
+        names.add(f"{path}/name", name, style.APPROXIMATION, place, CRAFT)
 
 
 def log_ladder(picture: Picture, story: Story) -> None:
@@ -258,17 +267,15 @@ def turned(places: np.ndarray, angle: np.ndarray) -> np.ndarray:
     return np.stack([c * x + s * y, c * y - s * x, z], 1)
 
 
-def log_push_name(picture: Picture, story: Story, size: float, eye: np.ndarray) -> None:
+def add_push_name(story: Story, size: float, eye: np.ndarray, names: Names) -> None:
     """The word "push" beyond the tip of its arrow as seen from directions (n, 3), clear of the film."""
     if story.most <= 0:
         return
     arrow = story.arrow()
     flat = arrow - np.sum(arrow * eye, 1, keepdims=True) * eye
     length = np.linalg.norm(flat, axis=1, keepdims=True)
-    place = unit(flat) * np.maximum(length + 0.045 * story.reach, 0.9 * size)
-    place = np.where((story.push > 0)[:, None], place, np.nan)
-    picture.log_label_style("/world/craft/push_name", style.PUSH, "push")
-    picture.log_labels("/world/craft/push_name", story.index, place)
+    place = story.position + unit(flat) * np.maximum(length + 0.045 * story.reach, 0.9 * size)
+    names.add("/world/names/push", "push", style.PUSH, np.where((story.push > 0)[:, None], place, np.nan), CRAFT)
 
 
 def views_of(story: Story, camera: Camera) -> list[Space]:
@@ -277,7 +284,7 @@ def views_of(story: Story, camera: Camera) -> list[Space]:
     everything = ("+ /world/**",)
     top = float(max(2.35 * reach, 1.5 * story.position[:, 2].max() + 1.2 * reach))
     ride = riding_eye(story) * 0.75 * reach
-    along = (*everything, "- /world/names/**", "- /world/marks/**", "- /world/craft/push_name")
+    along = (*everything, "- /world/names/**", "- /world/marks/**")
     return [
         Space(camera, everything),
         Space(Camera("From above", "/", (0.0, -0.01 * reach, top)), everything),

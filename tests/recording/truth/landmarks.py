@@ -8,7 +8,7 @@ import numpy as np
 
 from .facts import AU, DAY, PLANETS, planet_place
 from .measure import hue, same_place
-from .seen import poses, spots, texts
+from .seen import poses, shown, spots
 from .system import PLANET_HUES
 
 MU_SUN = 1.327_124_400_18e20
@@ -37,7 +37,7 @@ def widest_step(f) -> float:
 def mark_name(f, entity, number):
     """Its words above it: start, an event of the recording with its day, or what the flight ends with."""
     (text,) = f.picture.fixed(entity, "Points3D:labels")
-    place = f.picture.place(entity, "Points3D:positions", 0)[0]
+    place = shown(f, entity)[0][1]
     dot = f.picture.place("/world/marks", "Points3D:positions", 0)[int(number)]
     same_place(place[:2], dot[:2], size=1 + np.abs(dot).max())
     assert 0 < place[2] - dot[2] < 0.4 * max(f.truth.reach, np.abs(dot).max())
@@ -75,7 +75,7 @@ def reached(f, name):
 def ring_name(f, entity, name):
     """On the ring that it names."""
     (text,) = f.picture.fixed(entity, "Points3D:labels")
-    place = f.picture.place(entity, "Points3D:positions", 0)[0]
+    place = shown(f, entity)[0][1]
     if name == "target":
         lines = [
             np.concatenate(f.picture.line(other, 0)) / 1.004
@@ -115,9 +115,12 @@ def planet_body(f, entity, name):
 
 
 def planet_name(f, entity, name):
-    """Its name where it is, in its colour."""
-    planet_body(f, entity, name)
-    assert set(texts(f, entity)) == {name}
+    """Its name where its body is, in its colour, while no other name is there."""
+    bodies = spots(f, f"/world/planets/{name}/body")
+    for row, place in shown(f, entity):
+        assert np.array_equal(place, bodies[row][0])
+    assert f.picture.fixed(entity, "Points3D:labels") == [name]
+    assert hue(f.picture.color(entity, "Points3D:colors")[0]) == PLANET_HUES[name]
 
 
 def pan(f, entity):

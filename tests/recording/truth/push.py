@@ -7,7 +7,7 @@ import numpy as np
 from .facts import unit
 from .measure import hue, same_direction, same_place, same_turn
 from .picture import turn
-from .seen import arrows, home
+from .seen import arrows, home, shown
 
 RAMP = np.array([[74, 56, 140], [176, 60, 140], [255, 96, 72], [255, 176, 84]], float)  # weak to strong
 FOOT = 0.30  # brightness of a wall at the trail
@@ -196,14 +196,9 @@ def push_name(f, entity):
     """ "push" outside the arrow's tip, where it pushes."""
     assert f.picture.fixed(entity, "Points3D:labels") == ["push"]
     push, ways = strength(f), f.truth.carried(f.truth.thrust)
-    shown = 0
-    for row, step in enumerate(f.truth.steps):
-        spot = f.picture.place(entity, "Points3D:positions", step)
-        assert len(spot) == (push[row] > 0)
-        if len(spot):
-            assert (spot[0] - home(f, entity)[row]) @ ways[row] >= 0
-            shown += 1
-    assert shown
+    for row, place in shown(f, entity):
+        assert push[row] > 0
+        assert (place - home(f, entity)[row]) @ ways[row] >= 0
 
 
 def close_push(f, entity):

@@ -108,3 +108,16 @@ def spots(flight, entity: str) -> list[np.ndarray]:
 def texts(flight, entity: str) -> list[str]:
     """The label that is shown at each row."""
     return [flight.picture.at(entity, "Points3D:labels", step)[0] for step in flight.truth.steps]
+
+
+def shown(flight, entity: str) -> list[tuple[int, np.ndarray]]:
+    """Row and place (3,) of a name that is left out where another would lie on it; it is shown somewhere."""
+    if not flight.picture.moves(entity, "Points3D:positions"):
+        return [(row, flight.picture.place(entity, "Points3D:positions", 0)[0]) for row in range(len(flight.truth))]
+    found = []
+    for row, step in enumerate(flight.truth.steps):
+        spot = flight.picture.place(entity, "Points3D:positions", step)
+        assert len(spot) <= 1
+        found += [(row, spot[0])] if len(spot) else []
+    assert found, "a name that is never shown"
+    return found

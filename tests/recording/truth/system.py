@@ -6,7 +6,7 @@ import numpy as np
 
 from .facts import planet_ellipse, unit
 from .measure import hue, on_ring, same_angle, same_direction, same_place
-from .seen import poses, some, spots, strips, texts
+from .seen import poses, shown, some, spots, strips
 
 TARGET = 1.004  # a target is drawn so much large: on the trail it would tear
 STRAYS = 2e-3  # of the distance: what a curve between rows may stray from the orbit of its last row
@@ -49,9 +49,9 @@ def in_centre(f, entity, component="Points3D:positions"):
 
 def sun_name(f, entity):
     """Says Sun, below the Sun."""
-    (x, y, z) = f.picture.place(entity, "Points3D:positions", 0)[0]
-    assert (x, y) == (0, 0)
-    assert -0.2 * f.truth.reach < z < 0
+    for _, (x, y, z) in shown(f, entity):
+        assert (x, y) == (0, 0)
+        assert -0.2 * f.truth.reach < z < 0
     assert f.picture.fixed(entity, "Points3D:labels") == ["Sun"]
 
 
@@ -189,10 +189,13 @@ def all_round(line):
 def column_place(f, entity, name):
     """Where another answer says that the craft is."""
     table = f.truth.recording["/approximation"]
-    drawn = np.array([spot[0] for spot in spots(f, entity)])
-    same_place(drawn, table[f"{name}_position_m"], f.truth.length)
+    true = table[f"{name}_position_m"]
     if entity.endswith("/name"):
-        assert set(texts(f, entity)) == {name}
+        rows, places = zip(*shown(f, entity), strict=True)
+        same_place(np.array(places), true[list(rows)], f.truth.length)
+        assert f.picture.fixed(entity, "Points3D:labels") == [name]
+    else:
+        same_place(np.array([spot[0] for spot in spots(f, entity)]), true, f.truth.length)
     assert hue(f.picture.color(entity, "Points3D:colors")[0]) == "orange"
 
 

@@ -51,11 +51,6 @@ def orbit_of(f, entity):
     (low.orbit if "/world/tail" in f.picture.entities else system.osculating)(f, entity)
 
 
-def name_of_craft(f, entity):
-    """Its kind in words: over it in a low orbit, below it where nothing pushes."""
-    (low.craft_dot_name if "/world/tail" in f.picture.entities else craft.ballistic_name)(f, entity)
-
-
 SYSTEM = (
     Claim("/world", "ViewCoordinates", "right-handed, z up", INERTIAL, "1", system.right_handed),
     Claim("/world/stars", f"{POINT} {MOVE}", "nothing: a backdrop", INERTIAL, "far", system.backdrop),
@@ -69,7 +64,6 @@ SYSTEM = (
         "0.036 S",
         partial(system.in_centre, component="GaussianSplats3D:centers"),
     ),
-    Claim("/world/sun/name", POINT, "the Sun's name", INERTIAL, "1", system.sun_name),
     Claim("/world/center", POINT, "the centre", INERTIAL, "1", system.in_centre),
     Claim("/world/ecliptic", f"{MESH} {MOVE}", "z = 0", INERTIAL, "1.10 S", system.ecliptic),
     Claim("/world/sun_line", LINE, "/state position_m", INERTIAL, "1/L", system.sun_line),
@@ -81,6 +75,9 @@ SYSTEM = (
     Claim("/world/ladder", LINE, "/state as orbits", INERTIAL, "1/L", system.ladder),
     Claim("/world/planets/*/orbit", LINE, "mean elements", INERTIAL, "1/L", system.planet_orbit),
     Claim("/world/planets/*/body", POINT, "mean elements, or a circle", INERTIAL, "1/L", landmarks.planet_body),
+    Claim("/world/names/Sun", POINT, "the Sun's name", INERTIAL, "1", system.sun_name),
+    Claim("/world/names/push", POINT, "the arrow's tip", INERTIAL, "1", push.push_name),
+    Claim("/world/names/craft", POINT, "/scene craft_kind", INERTIAL, "1", craft.ballistic_name),
     Claim("/world/names/*", POINT, "mean elements, or a circle", INERTIAL, "1/L", landmarks.planet_name),
     Claim("/world/names/orbits/*", POINT, "the ring's own line", INERTIAL, "1/L", landmarks.ring_name),
     Claim("/world/marks", POINT, "/state, /events", INERTIAL, "1/L", landmarks.marks),
@@ -95,10 +92,9 @@ SYSTEM = (
     Claim("/world/rtn", MOVE, "/state", INERTIAL, "1/L", craft.orbital_pose),
     Claim("/world/season", MOVE, "right ascension of the Sun", INERTIAL, "1", system.season),
     Claim("/world/craft", f"{MOVE} {POINT}", "/state position_m", INERTIAL, "1/L", of_place),
-    Claim("/world/craft/name", POINT, "/scene craft_kind", INERTIAL, "1/L", name_of_craft),
+    Claim("/world/craft/name", POINT, "/scene craft_kind", INERTIAL, "1/L", low.craft_dot_name),
     Claim("/world/craft/body", MOVE, "/attitude quaternion", INERTIAL, "1", craft.body_pose),
     Claim("/world/craft/push", ARROW, "/thrust acceleration_m_s2", INERTIAL, "half and half", push.push_arrow),
-    Claim("/world/craft/push_name", POINT, "the arrow's tip", INERTIAL, "1", push.push_name),
 )
 
 LOW = (

@@ -93,6 +93,33 @@ def on_screen(places, view, aspect=1005 / 576):
     return np.stack([off @ right / aspect, off @ np.cross(toward, right)], -1) / (0.5 * depth[:, None])
 
 
+NAMED = re.compile(r"/world/(names|marks|approximation)/")
+LETTER, TALL = 6.2, 21.0  # pixels of a letter and of a name, in a view of 1005 x 576
+
+
+@pytest.mark.parametrize("name", FLIGHTS)
+def test_no_name_lies_on_another_in_the_first_the_middle_and_the_last_frame(flights, name):
+    flight = flights(name)
+    if "/world/tail" in flight.picture.entities:
+        pytest.skip("a low orbit is seen from the craft")
+    (view,) = [view for view in flight.picture.views if view.name == "Flight"]
+    named = [e for e in flight.picture.entities if NAMED.match(e) and "Points3D:labels" in flight.picture.components(e)]
+    for row in (0, len(flight.truth) // 2, -1):
+        step = flight.truth.steps[row]
+        pose = flight.picture.pose(view.origin, step) if view.origin != "/" else np.eye(4)
+        found = []
+        for entity in named:
+            spot = flight.picture.place(entity, "Points3D:positions", step)
+            (words,) = flight.picture.at(entity, "Points3D:labels", step)
+            for place in spot:
+                (x, y), half = on_screen((place - pose[:3, 3])[None] @ pose[:3, :3], view)[0], LETTER * len(words) / 2
+                found.append((502.5 * x - half - 6, 502.5 * x + half + 6, -288 * y, -288 * y + TALL, words))
+        for k, one in enumerate(found):
+            for other in found[:k]:
+                apart = one[0] >= other[1] or other[0] >= one[1] or one[2] >= other[3] or other[2] >= one[3]
+                assert apart, f"{one[4]} lies on {other[4]} at row {row}"
+
+
 @pytest.mark.parametrize("name", FLIGHTS)
 def test_the_trail_has_the_past_behind_the_craft_and_the_future_ahead(flights, name):
     flight = flights(name)

@@ -42,9 +42,9 @@ def test_a_bit_that_flips_anywhere_is_found_or_changes_nothing(whole, tmp_path):
     chance, same = random.Random(20), digest(path)
     frames = framing.framing(path)
     sealed = checksums.sums_of(path, frames).start
-    places = [chance.randrange(8 * sealed) for _ in range(60)]  # what the checksum covers
-    places += [chance.randrange(8 * sealed, 8 * len(content)) for _ in range(30)]  # the sums, index and tail
-    places += [8 * (message.start + chance.randrange(16)) for message in chance.sample(frames.messages, 15)]
+    places = [chance.randrange(8 * sealed) for _ in range(50)]  # what the checksum covers
+    places += [chance.randrange(8 * sealed, 8 * len(content)) for _ in range(20)]  # the sums, index and tail
+    places += [8 * (message.start + chance.randrange(16)) for message in chance.sample(frames.messages, 10)]
     for bit in places:
         (tmp_path / "damaged.rrd").write_bytes(flipped(content, bit))
         found, sentence = tried(digest, tmp_path / "damaged.rrd")
@@ -57,7 +57,7 @@ def test_a_file_that_is_cut_anywhere_is_read_as_far_as_it_goes_or_refused(whole,
     content, path = whole
     position = read(path)["/state"]["position_m"]
     chance = random.Random(3)
-    for stop in [*(chance.randrange(len(content)) for _ in range(3)), len(content) - 1, len(content) - 33]:
+    for stop in [*(chance.randrange(len(content)) for _ in range(2)), len(content) - 1]:
         (tmp_path / "cut.rrd").write_bytes(content[:stop])
         recording, sentence = tried(read, tmp_path / "cut.rrd")
         assert "\n" not in sentence
@@ -164,7 +164,7 @@ def test_damage_to_a_recording_without_checksums_does_not_end_this_process(tmp_p
     stream.disconnect()
     content = (tmp_path / "other.rrd").read_bytes()
     chance, sentences = random.Random(1), []
-    for _ in range(6):
+    for _ in range(4):
         (tmp_path / "damaged.rrd").write_bytes(flipped(content, chance.randrange(8 * 200, 4 * len(content))))
         sentences.append(tried(digest, tmp_path / "damaged.rrd")[1])
     assert any(sentences)
@@ -187,7 +187,7 @@ def test_a_harmed_recording_is_told_in_one_sentence_or_read_as_far_as_it_is_whol
     """Blocks swapped, emptied or cut out, bytes too many: with checksums, what is complete has the same contents."""
     content, path = whole
     chance, same, probed = random.Random(9), digest(path), 0
-    for _ in range(60):
+    for _ in range(40):
         (tmp_path / "damaged.rrd").write_bytes(changed := harmed(content, chance))
         if content.startswith(changed):
             continue  # cut off, which has a test of its own

@@ -64,6 +64,7 @@ from sailviz.propagate.stepping import stopped_by as stopped_by
 from sailviz.propagate.stepping import time as time
 
 SAFETY, SHRINK_MOST, GROW_MOST = 0.9, 0.333, 6.0  # of the step-size controller: Hairer's values
+WORTH_A_STEP = 1e-9  # tolerance below which steps end at kinks of the forces; for a wider one that would only cost
 VECTOR = 16  # rows that one turn of the compiled output loop fills
 
 
@@ -299,6 +300,7 @@ def advance_compiled(
         speed = np.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5])
         dynamical = r / max(speed, np.sqrt(mu / r))
         clock[STEP] = min(3.0 * tolerance**0.125 * dynamical, largest_step)
+    edged = p.callbacks.edges != 0 and tolerance < WORTH_A_STEP
     row, ended = open_block(count)
     t, interval = clock[TIME], count[INTERVAL]
     factor = factors[interval] * count[IN_USE]
@@ -314,7 +316,7 @@ def advance_compiled(
             break
         # one accepted step, landing on the next kink of the thrust or of other forces, or on the end
         limit = target = next_limit(breaks, interval, t_end)
-        if p.callbacks.edges != 0:
+        if edged:
             target, jumps = next_edge(t, limit, min(1.01 * clock[STEP], largest_step), y, k[0], p)
             if jumps:
                 derivative(t, y, factor, p, k[0])

@@ -139,3 +139,10 @@ def test_blocks_of_any_size_give_the_same_bits():
     whole = sailviz.simulate(scene)
     parts = list(sailviz.simulate_blocks(scene, block_rows=7))
     assert np.array_equal(np.concatenate([part.position for part in parts]), whole.position)
+
+
+def test_a_wide_tolerance_is_not_charged_for_what_it_does_not_ask_for():
+    """At 1e-9 as many steps as a smooth force takes."""
+    _, wide, _, _, _ = flight("deorbit/estcube-2-maximum", 40, 1e-9)
+    _, narrow, _, _, _ = flight("deorbit/estcube-2-maximum", 40, 0.99e-9)
+    assert dop853.statistics(narrow)[0] > 1.5 * dop853.statistics(wide)[0]

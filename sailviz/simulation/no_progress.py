@@ -120,6 +120,6 @@ def _kind(p: Plan) -> str:
 
 def _what_acts(p: Plan) -> str:
     around = p.scene.environment
-    parts = [p.scene.device.kind if p.scene.device.kind != "none" else ""]
+    parts: list[str] = [p.scene.device.kind if p.scene.device.kind != "none" else ""]
     parts += [name for name in ("third_body", "atmosphere", "ionosphere") if getattr(around, name, None) is not None]
     return ", ".join(["gravity", *filter(None, parts)])

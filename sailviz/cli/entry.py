@@ -33,6 +33,7 @@ COMMANDS = {  # name, which is also that of the module -> function there
     "sweep": "sweep",
     "transfer": "transfer",
     "view": "view",
+    "watch": "watch",
     "web": "web",
 }
 

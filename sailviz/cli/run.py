@@ -188,15 +188,19 @@ def _facts(verdict: Verdict) -> dict[str, Any]:
 
 
 def _tell(facts: dict[str, Any], verdicts: list[Verdict]) -> None:
+    tell_flight(facts["title"], facts["duration_s"], facts["rows"], facts["ended"], verdicts)
+    for path in facts["recording"]:
+        click.echo(f"Recorded {path}; look at it with: {_rerun()} {path}")
+
+
+def tell_flight(title: str, seconds: float, rows: int, ended: str, verdicts: list[Verdict]) -> None:
+    """Say how long a flight was, what ended it and what became of what its scene expects."""
     from sailviz.checks.expectations import table
     from sailviz.words import duration
 
-    end = f", ended by {facts['ended']}" if facts["ended"] else ""
-    click.echo(f"{facts['title']}: {duration(facts['duration_s'])}, {facts['rows']:,} rows{end}")
+    click.echo(f"{title}: {duration(seconds)}, {rows:,} rows" + (f", ended by {ended}" if ended else ""))
     if verdicts:
         click.echo(table(verdicts))
-    for path in facts["recording"]:
-        click.echo(f"Recorded {path}; look at it with: {_rerun()} {path}")
 
 
 def _rerun() -> str:

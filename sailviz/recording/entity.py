@@ -65,6 +65,11 @@ class Entity(Mapping[str, np.ndarray]):
                 return values
         raise KeyError(f"{self.path} is not on a timeline {name}")
 
+    @property
+    def timelines(self) -> tuple[str, ...]:
+        """Those on which its rows stand."""
+        return tuple(name for name in TIMELINES if any(name in table.column_names for table in self.tables))
+
     def described(self) -> str:
         """Its columns with shapes and units: "time_s (n,) s, position_m (n, 3) m"; of a static one the names alone."""
         if not self.tables:

@@ -24,7 +24,12 @@ KINDS = (
 
 def folder_of(scene: Scene) -> Path:
     """Where the files that a scene names lie: beside its own, or in the working directory for a scene of no file."""
-    return Path(os.path.abspath(os.path.dirname(scene.source) if os.path.isfile(scene.source) else ""))
+    return folder_beside(scene.source)
+
+
+def folder_beside(source: str) -> Path:
+    """The same for what a scene was loaded from: a path or a shipped name."""
+    return Path(os.path.abspath(os.path.dirname(source) if os.path.isfile(source) else ""))
 
 
 def outside(folder: Path, name: str) -> str:

@@ -13,15 +13,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self, TypeVar
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, Self
 
 from sailviz import files
 from sailviz.errors import RecordingError
 from sailviz.recording.children import Child
 from sailviz.recording.reader import FilePath, read
 from sailviz.recording.sinks import viewer_binary
+from sailviz.recording.views.asking import A, ask, place_on
 from sailviz.recording.views.dressed import Words, dress, words_of
 from sailviz.recording.views.scratch import scratch
 from sailviz.recording.web_page import free_port
@@ -29,7 +28,6 @@ from sailviz.recording.web_page import free_port
 if TYPE_CHECKING:
     from rerun.experimental import ViewerClient
 
-A = TypeVar("A")  # of an answer
 PACKAGES = "libvulkan1 mesa-vulkan-drivers"
 START, SETTLE = 60.0, 25.0  # s to wait for the viewer, and for a picture that no longer changes
 AGREE = 3  # frames in a row that must be the same
@@ -103,23 +101,8 @@ class Studio:
         return self
 
     def _asked(self, words: str, question: Callable[[], A]) -> A:
-        """The viewer's answer; asked again where it does not answer in time, for a machine may have much else to do.
-        RecordingError, in a sentence, where it never does."""
-        for patience in (1.0, 3.0, 0.0):
-            try:
-                return question()
-            except (OSError, RuntimeError) as error:  # TimeoutError is an OSError
-                if self._process.poll() is not None:
-                    raise RecordingError(
-                        f"the viewer ended by itself with code {self._process.returncode} when it was asked {words}"
-                    ) from None
-                if not patience:
-                    raise RecordingError(
-                        f"the viewer of {self._path.name} was asked {words} three times and did not answer "
-                        f"({_first_line(error)}); where much else is running, try again later"
-                    ) from None
-                time.sleep(patience)
-        raise AssertionError("the last try returns or raises")
+        """The viewer's answer. RecordingError, in a sentence, where it never answers."""
+        return ask(self._process, words, question, f"the viewer of {self._path.name}")
 
     def _wait_for_viewer(self, url: str) -> tuple[ViewerClient, Any]:
         """The viewer, and its state once it shows the recording."""
@@ -224,11 +207,7 @@ class Studio:
         """Put the time cursor at a fraction of the run."""
         timeline = self._timeline
         value = int(timeline.start + (timeline.end - timeline.start) * fraction(at))
-        place: dict[str, Any] = {"sequence": value}
-        if timeline.time_type == "duration":
-            place = {"duration": np.timedelta64(value, "ns")}
-        elif timeline.time_type == "timestamp":
-            place = {"timestamp": np.datetime64(value, "ns")}
+        place = place_on(timeline.time_type, value)
         self._asked("for a moment", lambda: self._client.set_time(timeline.name, play_state="paused", **place))
 
     def _settled(self, view_id: str | None, agree: int) -> bytes:
@@ -256,10 +235,6 @@ def fraction(at: float | str) -> float:
 def hide(blueprint: dict[str, Any], panel: str, archetype: str) -> None:
     """Leave a panel of the viewer out."""
     blueprint.setdefault(f"/{panel}", {}).setdefault(archetype, {})["state"] = "Hidden"
-
-
-def _first_line(error: Exception) -> str:
-    return (str(error).splitlines() or [type(error).__name__])[0]
 
 
 def start_viewer(path: Path, size: tuple[int, int], folder: Path) -> tuple[Child, int]:

@@ -82,10 +82,7 @@ def open_viewer(*paths: FilePath) -> None:
     """
     for path in paths:
         read(path)
-    if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        raise RecordingError(
-            "there is no screen for the viewer: `sailviz web` shows recordings in a browser, `sailviz picture` as PNG"
-        )
+    check_screen()
     process = Child(
         [viewer_binary(), *(str(Path(path).resolve()) for path in paths)], viewer_environment(), quiet=False
     )
@@ -95,6 +92,14 @@ def open_viewer(*paths: FilePath) -> None:
         process.end()
     if code:
         raise RecordingError(f"the viewer ended with code {code}")
+
+
+def check_screen() -> None:
+    """Raise RecordingError where a window has nowhere to open."""
+    if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        raise RecordingError(
+            "there is no screen for the viewer: `sailviz web` shows recordings in a browser, `sailviz picture` as PNG"
+        )
 
 
 @contextmanager

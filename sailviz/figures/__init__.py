@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from sailviz.figures.drawing import figure as figure
     from sailviz.figures.drawing import names as names
     from sailviz.figures.drawing import title as title
+    from sailviz.figures.recorded import draw_recording as draw_recording
 
 _HOMES = {
     "CATALOGUE": "catalogue",
@@ -30,5 +31,6 @@ _HOMES = {
     "figure": "drawing",
     "names": "drawing",
     "title": "drawing",
+    "draw_recording": "recorded",
 }
 __getattr__, __dir__, __all__ = lazily(__name__, _HOMES)

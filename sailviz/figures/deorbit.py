@@ -78,17 +78,17 @@ def deorbit(pen: Pen, left: Axes, right: Axes) -> None:
     s = pen.style
     h = np.linspace(400e3, 1200e3, 161)
     km = h / 1e3
-    burn, thrust = s.series[3], s.series[4]
+    burn, thrust, brake = s.series[3], pen.device("thruster"), pen.device("plasma brake")
     for (name, isp), at in zip(CHEMICAL.items(), (800e3, 800e3, 660e3), strict=True):
         left.plot(km, disposal.chemical(MASS, h, isp).propellant, color=burn)
         _name(left, at, disposal.chemical(MASS, at, isp).propellant, name, burn, below=isp == 300)
     for name, isp in ELECTRIC.items():
         left.plot(km, disposal.electric(MASS, h, isp, 0.01).propellant, color=thrust)
         _name(left, 1080e3, disposal.electric(MASS, 1080e3, isp, 0.01).propellant, name, thrust)
-    left.axhspan(*SYSTEM, color=s.series[0], alpha=0.28, linewidth=0)
+    left.axhspan(*SYSTEM, color=brake, alpha=0.28, linewidth=0)
     tether = float(plasma_brake.tether_mass(LENGTH))
-    left.axhline(tether, color=s.series[0])
-    words: dict[str, Any] = {"color": s.series[0], "fontsize": 9, "ha": "right", "va": "center"}
+    left.axhline(tether, color=brake)
+    words: dict[str, Any] = {"color": brake, "fontsize": 9, "ha": "right", "va": "center"}
     left.text(1185, float(np.sqrt(SYSTEM[0] * SYSTEM[1])), "plasma brake: reel, tip mass, high-voltage supply", **words)
     left.text(1185, 1.25 * tether, f"its tether alone: {LENGTH / 1e3:g} km, {1e3 * tether:.0f} g", **words)
     left.set(yscale="log", xlabel="altitude of the circular orbit [km]", ylabel="mass [kg]")

@@ -5,6 +5,7 @@ Needs matplotlib, which comes with the extra `plot`: pip install "sailviz[plot]"
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -41,13 +42,7 @@ def figure(name: str, style: str = "dark", **options: object) -> Figure:
             users = [other for other, candidate in CATALOGUE.items() if key in candidate.takes]
             raise FigureError(f"{name} takes no {key}" + (f", only {', '.join(users)} does" if users else ""))
     try:
-        from sailviz.figures import page
-    except ImportError:
-        raise FigureError('figures need matplotlib: pip install "sailviz[plot]"') from None
-    if style not in page.STYLES:
-        raise FigureError(f"there is no style {style!r}, only {' and '.join(page.STYLES)}")
-    try:
-        return page.compose(entry, style, options)
+        return _composed(entry, style, options)
     except OSError as error:
         raise FigureError(f"cannot read {error.filename}: {(error.strerror or str(error)).lower()}") from None
     except ValueError as error:
@@ -58,6 +53,13 @@ def figure(name: str, style: str = "dark", **options: object) -> Figure:
 
 def draw(name: str, path: str | Path, style: str = "dark", dpi: int = 160, **options: object) -> Path:
     """Draw a figure into a file, PNG, SVG or PDF by its ending. options as of `figure`. Returns the path."""
+    kind = file_of(path)
+    drawn = figure(name, style, **options)
+    return _saved(drawn, Path(path), kind, dpi)
+
+
+def file_of(path: str | Path) -> str:
+    """The kind of a figure's file. FigureError where it has none, or cannot be written."""
     path = Path(path)
     kind = path.suffix.lower().lstrip(".")
     if kind not in FORMATS:
@@ -66,7 +68,25 @@ def draw(name: str, path: str | Path, style: str = "dark", dpi: int = 160, **opt
         files.check(path, "figure")
     except OutputError as error:
         raise FigureError(str(error)) from None
-    drawn = figure(name, style, **options)
+    return kind
+
+
+def written(path: str | Path, kind: str, entry: Entry, style: str, dpi: int, options: Mapping[str, object]) -> Path:
+    """Draw a figure that is not in the catalogue into a file of that kind -> the path."""
+    return _saved(_composed(entry, style, options), Path(path), kind, dpi)
+
+
+def _composed(entry: Entry, style: str, options: Mapping[str, object]) -> Figure:
+    try:
+        from sailviz.figures import page
+    except ImportError:
+        raise FigureError('figures need matplotlib: pip install "sailviz[plot]"') from None
+    if style not in page.STYLES:
+        raise FigureError(f"there is no style {style!r}, only {' and '.join(page.STYLES)}")
+    return page.compose(entry, style, options)
+
+
+def _saved(drawn: Figure, path: Path, kind: str, dpi: int) -> Path:
     from sailviz.figures import page
 
     try:

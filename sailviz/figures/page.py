@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
@@ -66,12 +67,39 @@ STYLES = {
 }
 
 
+DEVICES = {  # what pushes or brakes has the same colour in every figure
+    "electric sail": (186, 140, 255),
+    "ideal film": (255, 206, 84),
+    "real film": (255, 176, 84),
+    "plasma brake": (255, 112, 67),
+    "thruster": (120, 224, 232),
+}
+WHITE, CONTRAST = "#ffffff", 3.0  # the least ratio for lines of WCAG 2.1, 1.4.11
+
+
+def luminance(share: np.ndarray) -> float:
+    """Relative luminance of sRGB values (3,) of 0 to 1, as WCAG 2.1 defines it."""
+    linear = np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)
+    return float(linear @ [0.2126, 0.7152, 0.0722])
+
+
 class Pen:
     """What a drawing function may ask for: the style, and the words that all figures share."""
 
     def __init__(self, style: Style):
         self.style = style
         self.ramp = LinearSegmentedColormap.from_list("ramp", style.ramp).with_extremes(bad=style.forbidden)
+
+    def device(self, name: str) -> str:
+        """The colour of a device, by its name in DEVICES."""
+        return self.readable(DEVICES[name])
+
+    def readable(self, color: Sequence[int]) -> str:
+        """A colour of the recordings (r, g, b), on white as much darker as it takes to be read there."""
+        share = np.array(color[:3], float) / 255
+        while self.style.panel == WHITE and 1.05 / (luminance(share) + 0.05) < CONTRAST:
+            share = 0.97 * share
+        return "#" + "".join(f"{round(255 * part):02x}" for part in share.tolist())
 
     def label(self, axes: Axes, x: float, y: float, text: str, color: str | None = None, **more: Any) -> Text:
         """Words inside a panel, on a patch of the panel's colour so that no line runs through them."""

@@ -28,14 +28,14 @@ def cone_and_acceleration(pen: Pen, left: Axes, right: Axes) -> None:
     push = electric_sail.acceleration([electric_sail.AU, 0.0, 0.0], normal, 1.0, "polynomial")
     fit: dict[str, Any] = {"color": s.quiet, "linestyle": (0, (1, 2)), "linewidth": 1.6, "zorder": 3}
 
-    left.plot(degrees, np.degrees(electric_sail.cone_angle(alpha)), color=s.series[0], zorder=4)
+    left.plot(degrees, np.degrees(electric_sail.cone_angle(alpha)), color=pen.device("electric sail"), zorder=4)
     left.plot(degrees[inside], np.degrees(np.arctan2(push[:, 1], push[:, 0])), **fit)
     for sign in (-1, 1):
         left.plot(sign * best, sign * most, "o", color=s.series[1], markersize=6, zorder=5)
     pen.label(left, 38, 21.6, f"{most:.2f}° at a pitch of {best:.2f}°", s.series[1], fontsize=9.5)
     left.set(xlabel="pitch angle α [°]", ylabel="cone angle φ [°]", xlim=(-90, 90), ylim=(-24, 24))
 
-    right.plot(degrees, electric_sail.dimensionless_acceleration(alpha), color=s.series[0], zorder=4)
+    right.plot(degrees, electric_sail.dimensionless_acceleration(alpha), color=pen.device("electric sail"), zorder=4)
     right.plot(degrees[inside], np.hypot(push[:, 0], push[:, 1]), **fit)
     for sign in (-1, 1):
         right.plot(sign * best, np.sqrt(0.5), "o", color=s.series[1], markersize=6, zorder=5)
@@ -58,13 +58,13 @@ def thrust_loci(pen: Pen, axes: Axes) -> None:
         return (3 + np.cos(2 * a)) / 4, np.sin(2 * a) / 4  # (3.47), (3.48)
 
     curves = (
-        ("ideal solar sail", sail("ideal"), s.series[1]),
-        ("optical solar sail (JPL 1978)", sail("jpl-1978"), s.series[3]),
-        ("electric sail", esail, s.series[0]),
+        ("ideal solar sail", sail("ideal"), pen.device("ideal film"), "-"),
+        ("optical solar sail (JPL 1978)", sail("jpl-1978"), pen.device("real film"), (0, (4, 2.5))),
+        ("electric sail", esail, pen.device("electric sail"), "-"),
     )
-    for name, push, color in curves:
+    for name, push, color, line in curves:
         k_r, k_t = push(alpha)
-        axes.plot(k_t, k_r, color=color, label=name, zorder=4)
+        axes.plot(k_t, k_r, color=color, linestyle=line, label=name, zorder=4)
         k_r, k_t = push(dots)
         axes.plot(k_t, k_r, "o", color=color, markersize=4.5, zorder=5)
     k_r, k_t = esail(dots)

@@ -101,7 +101,7 @@ def films(pen: Pen, *panels: Axes) -> None:
             rows = found[target, device]
             days.append(float(rows[np.isclose(rows[:, 0], 1.0), 1][0]))
         place = np.arange(len(COMPARED))[::-1]
-        colors = [pen.style.series[2 if device.startswith("electric") else 0] for device in COMPARED]
+        colors = [pen.device(kind_of(device)) for device in COMPARED]
         panel.barh(place, days, color=colors, height=0.62)
         for y, value in zip(place, days, strict=True):
             word = f"{value:.1f} d" if np.isfinite(value) else "none found"
@@ -110,6 +110,13 @@ def films(pen: Pen, *panels: Axes) -> None:
         panel.set(xlabel="flight time [d]", xlim=(0, 1.28 * np.nanmax(days)))
         panel.grid(visible=False, axis="y")
         panel.set_title(f"to {target.capitalize()}")
+
+
+def kind_of(device: str) -> str:
+    """What a device is called in the table of colours."""
+    if device.startswith("electric"):
+        return "electric sail"
+    return "ideal film" if device == "ideal" else "real film"
 
 
 def launch_window(pen: Pen, *panels: Axes) -> None:

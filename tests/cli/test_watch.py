@@ -18,7 +18,7 @@ from sailviz.recording.sinks import viewer_binary
 from sailviz.recording.views.screenshot import has_vulkan
 from sailviz.recording.web_page import free_port
 
-PATIENCE = 60.0  # s
+PATIENCE = 240.0  # s; the propagator may have to be compiled first
 WITHOUT_A_WINDOW = """
 import sys
 from sailviz.cli import main

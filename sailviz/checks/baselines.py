@@ -20,7 +20,7 @@ from sailviz.recording.comparison.differences import default_tolerance
 from sailviz.recording.comparison.result import Comparison
 from sailviz.recording.comparison.tables import Evidence, evidence
 from sailviz.recording.exports import arrays, write_npz, written_whole
-from sailviz.run import resample
+from sailviz.run import gaps, resample
 from sailviz.run.arrays import Run
 
 if TYPE_CHECKING:
@@ -215,9 +215,10 @@ def _run_of(path: Path, side: str) -> Run:
     turn = np.linalg.norm(state["velocity_m_s"], axis=1) / np.linalg.norm(state["position_m"], axis=1)
     if rows > 3 and np.max(turn[1:] * np.diff(time)) < SMOOTH:  # or a few rows would be taken for an orbit's ellipses
         time = np.interp(np.arange(16 * rows - 15) / 16, np.arange(rows), time)
+        time = time[~gaps.inside(time, data.gaps)]
 
     def column(entity: str, name: str) -> np.ndarray:
-        return resample.at(time, name, state["time_s"], tables[entity][name], state)
+        return resample.at(time, name, state["time_s"], tables[entity][name], state, data.gaps)
 
     return trajectory(
         time,
@@ -230,5 +231,6 @@ def _run_of(path: Path, side: str) -> Run:
         radius=facts.get("body_radius_m"),
         epoch=data.epoch,
         device=facts["craft_kind"],
+        gaps=data.gaps,
         title=f"{facts['title']} ({side}, {rows} rows)",
     )

@@ -132,7 +132,7 @@ def _run_one(
     }
     failures.summary(facts)
     if not quiet:
-        _tell(facts, verdicts)
+        _tell(facts, verdicts, recorded.remarks)
     failed = [verdict for verdict in verdicts if not verdict.passed]
     if failed:
         failures.worst(EXPECTATION_FAILED)
@@ -187,18 +187,22 @@ def _facts(verdict: Verdict) -> dict[str, Any]:
     }
 
 
-def _tell(facts: dict[str, Any], verdicts: list[Verdict]) -> None:
-    tell_flight(facts["title"], facts["duration_s"], facts["rows"], facts["ended"], verdicts)
+def _tell(facts: dict[str, Any], verdicts: list[Verdict], remarks: tuple[str, ...]) -> None:
+    tell_flight(facts["title"], facts["duration_s"], facts["rows"], facts["ended"], verdicts, remarks)
     for path in facts["recording"]:
         click.echo(f"Recorded {path}; look at it with: {_rerun()} {path}")
 
 
-def tell_flight(title: str, seconds: float, rows: int, ended: str, verdicts: list[Verdict]) -> None:
-    """Say how long a flight was, what ended it and what became of what its scene expects."""
+def tell_flight(
+    title: str, seconds: float, rows: int, ended: str, verdicts: list[Verdict], remarks: tuple[str, ...] = ()
+) -> None:
+    """Say how long a flight was, what ended it, what its rows do not tell and what became of what its scene expects."""
     from sailviz.checks.expectations import table
     from sailviz.words import duration
 
     click.echo(f"{title}: {duration(seconds)}, {rows:,} rows" + (f", ended by {ended}" if ended else ""))
+    for remark in remarks:
+        click.echo(remark)
     if verdicts:
         click.echo(table(verdicts))
 

@@ -1,7 +1,8 @@
 """The numbers of a run as they are: float64, SI, radians, every row. This is the contract `sailviz/1`.
 
 /state        time_s, position_m (3), velocity_m_s (3), mass_kg
-/attitude     pitch_rad, cone_rad, clock_rad, normal (3), quaternion (xyzw, body to inertial)
+/attitude     pitch_rad, cone_rad, clock_rad, normal (3), quaternion (xyzw, body to inertial); of a stowed sail the
+              normal is 0 and the angles NaN
 /thrust       acceleration_m_s2 (inertial, 3), acceleration_rtn_m_s2 (3), magnitude_m_s2, on (bool)
 /elements     semi_major_axis_m, eccentricity, inclination_rad, raan_rad, argument_rad, true_anomaly_rad
 /environment  whatever acted, the unit in each name, (n,) or (n, 3); absent where nothing did
@@ -11,7 +12,7 @@
               that many numbers, unit in each name; kept_position_m (3 per flight drawn); one_NAME of the first flight;
               saturated and histogram, shares. /ensemble/NAME/facts, static: levels, ends of the flights, words
 /events       name, time_s, state (position m, velocity m/s, mass kg: 7), at the first row not before the event
-/scene        static: what the run was made from and how far it got
+/scene        static: what the run was made from and how far it got; gaps_s (start, end) of each span without data
 
 Each is one archetype `sailviz.<Entity>` on the timelines step (the row's number), sim_time and, with an epoch, utc.
 """
@@ -184,9 +185,10 @@ def scene(setting: Setting, *, rows: int, complete: bool, ended: str) -> rr.Dyna
         "complete": bool(complete),
         "ended": ended,
     }
-    return rr.DynamicArchetype(
-        archetype("/scene"), components={name: pa.array([value]) for name, value in values.items()}
-    )
+    components = {name: pa.array([value]) for name, value in values.items()}
+    if setting.gaps:
+        components["gaps_s"] = arrow_column(np.array(setting.gaps))
+    return rr.DynamicArchetype(archetype("/scene"), components=components)
 
 
 def plain(value: Any) -> Any:

@@ -117,6 +117,7 @@ def latest_static(batches: list[pa.RecordBatch]) -> dict[str, pa.Array]:
 def group_by_columns(batches: list[pa.RecordBatch]) -> list[pa.Table]:
     """Batches of the same columns as one table each, rows in order of the first timeline."""
     groups: dict[tuple[str, ...], list[pa.Table]] = {}
+    batches = sorted(batches, key=lambda batch: "step" not in batch.schema.names)  # what stands within gaps comes last
     for batch in batches:
         names = tuple(sorted(name for name in batch.schema.names if name != ROW_ID))
         groups.setdefault(names, []).append(pa.Table.from_batches([batch.select(names).replace_schema_metadata(None)]))

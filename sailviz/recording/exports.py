@@ -3,7 +3,7 @@
 csv, parquet   one table: step, time_s, utc where there is an epoch, then entity.column_unit[.component]; events in a
                second file beside it, NAME.events.csv, and each ensemble in NAME.ensemble.OWN_NAME.csv
 npz            every column under its own key, e.g. state.position_m (n, 3), events.time_s, scene.identity
-oem            position and velocity, CCSDS 502.0-B, in EME2000
+oem            position and velocity, CCSDS 502.0-B, in EME2000; after a gap and where the velocity jumps a new segment
 """
 
 from __future__ import annotations
@@ -222,6 +222,7 @@ def to_oem(source: Source | Evidence, path: FilePath, frame: str = "") -> Path:
     every row.
     """
     from sailviz.frames import EQUATOR_FROM_ECLIPTIC, centuries_since_j2000, precession
+    from sailviz.run import gaps as spans
     from sailviz.run.oem import ECLIPTIC, EQUATOR, Ephemeris
     from sailviz.run.oem_writer import plain, write_oem
 
@@ -260,11 +261,12 @@ def to_oem(source: Source | Evidence, path: FilePath, frame: str = "") -> Path:
         _checked_times(state, data.label),
         position,
         velocity,
+        tuple((row, float(state.time[row + 1] - state.time[row])) for row in spans.last_rows(state.time, data.gaps)),
     )
     return write_oem(Path(path), ephemeris, comments)
 
 
 def _checked_times(state: Table, label: str) -> np.ndarray:
-    if np.any(np.diff(state.time) <= 0):
+    if np.any(np.diff(state.time) < 0):
         raise RecordingError(f"{label}: its times do not increase, and an OEM needs that")
     return state.time

@@ -57,6 +57,11 @@ class GrowingRecording:
         return tuple(self._attached.drains)
 
     @property
+    def remarks(self) -> tuple[str, ...]:
+        """What its rows do not tell, in sentences, once it is finished."""
+        return tuple(self._drawing.remarks)
+
+    @property
     def identity(self) -> str:
         """Hash of the resolved scene."""
         return self._setting.identity

@@ -196,6 +196,12 @@ class Recording(Mapping[str, Entity]):
         order = np.argsort(times, kind="stable")
         return [EventRow(str(names[i]), float(times[i]), states[i], int(steps[i])) for i in order]
 
+    @property
+    def gaps(self) -> np.ndarray:
+        """(k, 2) s, starts and ends of the spans without data."""
+        scene: Mapping[str, np.ndarray] = self.get("/scene", {})
+        return np.array(scene.get("gaps_s", []), float).reshape(-1, 2)
+
     def chunks(self, entity: str = "") -> Iterator[Chunk]:
         """The pieces in which rerun keeps an entity, or all of the file, read anew each time."""
         stream = self._stream()

@@ -90,6 +90,11 @@ def check_duration(run: Run) -> None:
         )
 
 
+def between_rows(setting: Setting, time: ArrayLike) -> list[rr.TimeColumn]:
+    """The columns sim_time and, where the scene has an epoch, utc, of times (n,) s between rows, which have no step."""
+    return time_columns(setting, np.zeros(np.shape(time), np.int64), time)[1:]
+
+
 def time_columns(setting: Setting, number: ArrayLike, time: ArrayLike) -> list[rr.TimeColumn]:
     """The columns step, sim_time and, where the scene has an epoch, utc. number (n,) int, time (n,) s."""
     ns = np.round(np.asarray(time, float) * 1e9).astype(np.int64).astype("timedelta64[ns]")

@@ -29,7 +29,8 @@ BLOCK = 16_384  # rows sent at once: large enough for speed, small enough for me
 
 @dataclass(frozen=True)
 class Recorded:
-    """What was recorded. `complete` is False where the run was interrupted; `url` is where a browser finds it."""
+    """What was recorded. `complete` is False where the run was interrupted; `url` is where a browser finds it;
+    `remarks` are sentences about gaps and sparse rows."""
 
     rows: int
     complete: bool
@@ -37,6 +38,7 @@ class Recorded:
     paths: tuple[Path, ...]
     seconds: float  # of wall time inside the recorder
     url: str = ""
+    remarks: tuple[str, ...] = ()
     stream: rr.RecordingStream | None = field(default=None, repr=False, compare=False)  # which serves the browser
     drains: tuple[Drain, ...] = field(default=(), repr=False, compare=False)  # what then still goes to files
 
@@ -154,6 +156,7 @@ class Recorder:
             paths=paths,
             seconds=self._seconds,
             url=growing.url,
+            remarks=growing.remarks,
             stream=growing.stream,
             drains=growing.drains,
         )

@@ -12,6 +12,7 @@ from sailviz.calendar import DateError
 from sailviz.constants import MU_EARTH, MU_SUN, RADIUS_EARTH, RADIUS_SUN
 from sailviz.errors import RecordingError
 from sailviz.run import dates, resample, unit_guard
+from sailviz.run import gaps as spans
 from sailviz.run.arrays import Body, Event, Reference
 from sailviz.run.devices import LABELS
 from sailviz.words import shortened
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     Epoch = np.datetime64 | datetime | date | str  # UTC
     Curves = Mapping[str, ArrayLike] | Iterable[Reference | tuple[str, ArrayLike]]
     Events = Iterable[Event | tuple[str, float]]
+    Missing = Iterable[tuple[Any, Any]]  # times, or dates, at which data ends and begins again
 
 N = TypeVar("N", Event, Reference)
 NOTHING = np.zeros(0)
@@ -49,11 +51,30 @@ def brief(value: object) -> str:
     return shortened(repr(value))
 
 
+def _edges(pair: object, epoch: np.datetime64 | None) -> object:
+    """The two times of a gap; dates as text or datetimes become datetime64 where the run has an epoch."""
+    edges = list(pair) if isinstance(pair, Iterable) and not isinstance(pair, str | bytes) else [pair]
+    if epoch is not None and all(isinstance(edge, str | date | np.datetime64) for edge in edges):
+        return np.array([dates.epoch_of(edge) for edge in edges], "datetime64[ns]")
+    return np.array(edges)
+
+
+def _gap_fault(start: float, end: float, time: np.ndarray) -> str:
+    """What keeps a span from being one without data, in words; "" for nothing."""
+    if not start < end:
+        return "does not end after its start"
+    if not time[0] <= start < end <= time[-1]:
+        return f"is not within the run, {time[0]:.6g} to {time[-1]:.6g} s"
+    rows = int(np.count_nonzero((time > start) & (time < end)))
+    return f"has {rows} row{'s' if rows > 1 else ''} in it" if rows else ""
+
+
 class ArrayChecks:
     """Gathers everything that is wrong with the arguments. What comes back beside a fault is not for use."""
 
     def __init__(self) -> None:
         self._faults: list[str] = []
+        self._given: np.ndarray | None = None  # numbers of the rows that hold data, where some do not
 
     @property
     def good(self) -> bool:
@@ -71,6 +92,25 @@ class ArrayChecks:
         if self._faults:
             raise TrajectoryError(self._faults)
 
+    def with_data(self, position: ArrayLike, velocity: ArrayLike) -> np.ndarray | None:
+        """Numbers of the rows that hold data, None where all do: a row whose position and velocity are all NaN does
+        not."""
+        try:
+            states = [dates.numbers(given) for given in (position, velocity)]
+        except DateError:
+            return None  # what is wrong with them is said elsewhere
+        if any(state.ndim != 2 or state.shape != states[0].shape for state in states):
+            return None
+        lost = np.all(np.isnan(np.hstack(states)), axis=1)
+        if not lost.any() or lost.all():
+            return None
+        self._given = np.flatnonzero(~lost)
+        return self._given
+
+    def row(self, index: int) -> int:
+        """The number of a row as it was given."""
+        return int(index) if self._given is None else int(self._given[index])
+
     def array(self, name: str, values: ArrayLike, wanted: str) -> np.ndarray:
         """float64 and finite, a copy of its own."""
         try:
@@ -83,9 +123,12 @@ class ArrayChecks:
             return self.refuse(f"{name}: shape {found.shape}, wanted {wanted}")
         if not np.isfinite(found).all():
             index = np.argwhere(~np.isfinite(found))[0]
-            row = f"row {index[0]} " if len(index) else ""
+            row = f"row {self.row(index[0]) if self._by_row(found) else index[0]} " if len(index) else ""
             self.say(f"{name}: {row}is not a number ({found[tuple(index)]})")
         return found
+
+    def _by_row(self, values: np.ndarray) -> bool:
+        return self._given is not None and len(values) == len(self._given)
 
     def times(self, values: object, epoch: np.datetime64 | None) -> tuple[np.ndarray, np.datetime64 | None]:
         """(times (n,) s, epoch): numbers, spans of any unit, or dates, which bring an epoch along."""
@@ -99,7 +142,8 @@ class ArrayChecks:
         down = np.flatnonzero(np.diff(found) < 0)
         if len(down):
             i = int(down[0])
-            self.say(f"time: goes back from row {i} ({found[i]:.10g}) to row {i + 1} ({found[i + 1]:.10g})")
+            before, after = self.row(i), self.row(i + 1)
+            self.say(f"time: goes back from row {before} ({found[i]:.10g}) to row {after} ({found[i + 1]:.10g})")
         return found, epoch
 
     def reach(self, time: np.ndarray, epoch: np.datetime64 | None) -> None:
@@ -117,7 +161,8 @@ class ArrayChecks:
         if len(apart):
             row, gap = int(pairs[apart[0]]), off[apart[0]]
             self.say(
-                f"time: does not increase from row {row} to row {row + 1} (both {time[row]:.10g}), and they are "
+                f"time: does not increase from row {self.row(row)} to row {self.row(row + 1)} "
+                f"(both {time[row]:.10g}), and they are "
                 f"{gap:.4g} m apart: a jump of the velocity has one place"
             )
 
@@ -217,9 +262,15 @@ class ArrayChecks:
                 self.say(f"{argument}: number {i}, {brief(item)}, is no pair of a name and its values")
 
     def events(
-        self, events: Events, time: np.ndarray, position: np.ndarray, velocity: np.ndarray, mass: np.ndarray
+        self,
+        events: Events,
+        time: np.ndarray,
+        position: np.ndarray,
+        velocity: np.ndarray,
+        mass: np.ndarray,
+        gaps: spans.Gaps = (),
     ) -> tuple[Event, ...]:
-        """Events with states, those between the rows read off a cubic, and the mass off a line."""
+        """Events with states, those between the rows read off a cubic, and the mass off a line; not within gaps."""
         found = []
         for item in self.items("events", events, Event):
             name, when = (item.name, item.time) if isinstance(item, Event) else item
@@ -228,6 +279,9 @@ class ArrayChecks:
                 continue
             if not time[0] <= when <= time[-1]:
                 self.say(f"events: {name!r} at {when!r} s is outside the run, {time[0]:.6g} to {time[-1]:.6g} s")
+                continue
+            if not isinstance(item, Event) and spans.inside(np.array([float(when)]), gaps).any():
+                self.say(f"events: {name!r} at {when!r} s lies where there is no data: give an Event with its state")
                 continue
             if isinstance(item, Event):
                 if np.shape(item.state) != (7,):
@@ -238,7 +292,7 @@ class ArrayChecks:
                 continue
             state = {"position_m": position, "velocity_m_s": velocity}
             at = np.array([float(when)])
-            now = [resample.at(at, column, time, values, state)[0] for column, values in state.items()]
+            now = [resample.at(at, column, time, values, state, gaps)[0] for column, values in state.items()]
             found.append(Event(name, float(when), np.append(np.concatenate(now), np.interp(when, time, mass))))
         return tuple(sorted(found, key=lambda event: event.time))
 
@@ -268,7 +322,36 @@ class ArrayChecks:
     def no_zeros(self, name: str, vectors: np.ndarray) -> None:
         zero = np.flatnonzero(np.linalg.norm(vectors, axis=1) == 0)
         if len(zero):
-            self.say(f"{name}: row {zero[0]} is the zero vector")
+            self.say(f"{name}: row {self.row(zero[0])} is the zero vector")
+
+    def stowed(self, normal: np.ndarray, thrust: np.ndarray) -> None:
+        """A zero normal is a stowed sail, which pushes nothing."""
+        pushing = np.flatnonzero(~normal.any(axis=1) & thrust.any(axis=1))
+        if len(pushing):
+            self.say(f"thrust: row {self.row(pushing[0])} has a push, but a sail without a normal there is stowed")
+
+    def gaps(self, given: Missing, time: np.ndarray, epoch: np.datetime64 | None) -> tuple[tuple[float, float], ...]:
+        """Spans without data, s: those given, between rows, and those that rows without data have left."""
+        found: list[tuple[float, float]] = []
+        if self._given is not None:
+            lost = np.flatnonzero(np.diff(self._given) > 1)
+            found += [(float(time[row]), float(time[row + 1])) for row in lost]
+        if not isinstance(given, Iterable) or isinstance(given, str | bytes | Mapping):
+            self.say(f"gaps: wanted pairs of a start and an end, not {brief(given)}")
+            return ()
+        for i, pair in enumerate(given):
+            try:
+                edges, _ = dates.seconds_of(_edges(pair, epoch), epoch)
+                start, end = edges.tolist()
+            except (DateError, TypeError, ValueError):
+                self.say(f"gaps: number {i}, {brief(pair)}, is no pair of times")
+                continue
+            fault = _gap_fault(start, end, time)
+            if fault:
+                self.say(f"gaps: number {i}, {start:.10g} to {end:.10g} s, {fault}")
+            else:
+                found.append((start, end))
+        return spans.joined(found)
 
     def units(self, time: np.ndarray, position: np.ndarray, velocity: np.ndarray, body: Body) -> str:
         """Whether the rows are in SI -> what is strange about them though it may be so, "" for nothing."""
@@ -279,10 +362,10 @@ class ArrayChecks:
         distance = np.linalg.norm(position, axis=1)
         row = int(np.argmin(distance))
         if distance[row] == 0:
-            self.say(f"position: row {row} is the centre of the {body.name}")
+            self.say(f"position: row {self.row(row)} is the centre of the {body.name}")
         elif distance[row] < INSIDE * body.radius:
             self.say(
-                f"position: row {row} lies {distance[row]:.4g} m from the centre of the {body.name}, whose radius is "
-                f"{body.radius:.4g} m; are these kilometres?"
+                f"position: row {self.row(row)} lies {distance[row]:.4g} m from the centre of the {body.name}, "
+                f"whose radius is {body.radius:.4g} m; are these kilometres?"
             )
         return strange

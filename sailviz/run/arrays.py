@@ -132,13 +132,14 @@ class Setting:
     plots: tuple[str, ...] = ()  # words of the curves that shall be in front
     shells: tuple[Shell, ...] = ()
     ensembles: tuple[EnsembleStatistics, ...] = ()
+    gaps: tuple[tuple[float, float], ...] = ()  # s, (start, end) of spans without data
 
 
 @dataclass(frozen=True)
 class Attitude:
     """pitch, cone, clock (n,) rad; normal (n, 3) inertial unit vector: the sail normal away from the Sun, the thrust
     direction of a thruster, or from tip to satellite along a tether; quaternion (n, 4) xyzw, body to inertial, body
-    z = normal."""
+    z = normal. A stowed sail has the normal 0, angles NaN and z away from the central body."""
 
     pitch: np.ndarray
     cone: np.ndarray

@@ -12,7 +12,7 @@ import hashlib
 import platform
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,9 +27,11 @@ from sailviz.version import __version__
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from sailviz.run.array_checks import Curves, Epoch, Events
+    from sailviz.run.array_checks import Curves, Epoch, Events, Missing
 
 __all__ = ["TrajectoryError", "trajectory"]
+
+SAILS = ("solar-sail", "electric-sail")  # what can be stowed
 
 
 def trajectory(
@@ -55,14 +57,17 @@ def trajectory(
     events: Events = (),
     references: Curves = (),
     environment: Mapping[str, ArrayLike] | None = None,
+    gaps: Missing = (),
     planets: bool = True,
     accuracy: str = "Given as arrays; nothing was propagated.",
     play_duration: float | None = None,
 ) -> Run:
     """A Run from arrays. SI; vectors inertial: in the ecliptic of J2000 round the Sun, in the equator round the Earth.
 
+    A row whose position and velocity are all NaN holds no data: it is left out, and between its neighbours is a gap.
+
     normal : (n, 3) of a sail, away from the Sun; by default the thrust's direction, without thrust the direction away
-        from the central body
+        from the central body. Zero where a sail is stowed, which then has no angles and must have no thrust
     thrust : (n, 3) acceleration m/s2; zero rows count as switched off
     mu m3/s2, body's name, radius m : the Sun's by default, the Earth's where mu is hers
     epoch : UTC of time 0, a datetime64, datetime or text. mass : kg, a number or (n,); NaN is
@@ -70,7 +75,9 @@ def trajectory(
     device : "solar-sail", "electric-sail", "plasma-brake", "thruster" or "none", for the mesh; by default what thrust
         and normal suggest. side m of a sail, tethers, tether_length m : for scale and labels
     events : (name, time s) pairs or Events. references : name -> (k, 3) m, or References
-    environment : name with unit -> (n,) numbers or truth values, or (n, 3). planets : draw their orbits round the Sun,
+    environment : name with unit -> (n,) numbers or truth values, or (n, 3)
+    gaps : (start, end) pairs, s or dates, of spans without data, within the run and between rows: nothing is drawn or
+        read off there. planets : draw their orbits round the Sun,
         and with an epoch where they are; round the Earth an epoch turns the globe
     Raises TrajectoryError (a ValueError) with every fault at once.
     """
@@ -81,7 +88,7 @@ def trajectory(
     lines = check.lines("look_for", look_for)
     given = _checked(
         check, time, position, velocity, normal, thrust, mass, (body, mu, radius), epoch, device, environment,
-        references, events,
+        references, events, gaps,
     )  # fmt: skip
     known_planets = planets and given.body.name == "Sun"
     setting = Setting(
@@ -109,6 +116,7 @@ def trajectory(
         accuracy=f"{accuracy} {given.note[0].upper()}{given.note[1:]}." if given.note else accuracy,
         identity="",
         play_duration=None if play_duration is None else float(play_duration),
+        gaps=given.gaps,
     )
     run = _derived(given, setting, _bodies(given.body, given.epoch, given.time, planets))
     return replace(run, setting=replace(setting, identity=_identity(run)))
@@ -130,6 +138,7 @@ class _Given:
     environment: dict[str, np.ndarray]
     references: tuple[Reference, ...]
     events: tuple[Event, ...]
+    gaps: tuple[tuple[float, float], ...]
     note: str  # what is strange about the rows though it may be so
 
 
@@ -147,9 +156,18 @@ def _checked(
     environment: Mapping[str, ArrayLike] | None,
     references: Curves,
     events: Events,
+    gaps: Missing,
 ) -> _Given:
     """TrajectoryError with everything that is wrong, in the order of the arguments."""
     moment = check.epoch(epoch)
+    kept = check.with_data(position, velocity)
+    if kept is not None:
+        count = len(np.ma.asarray(position))
+        time, position, velocity, normal, thrust, mass = (
+            _rows(values, kept, count) for values in (time, position, velocity, normal, thrust, mass)
+        )
+        if isinstance(environment, Mapping):
+            environment = {name: _rows(values, kept, count) for name, values in environment.items()}
     times, moment = check.times(time, moment)
     rows = len(times) or None
     places, velocities = check.vectors("position", position, rows), check.vectors("velocity", velocity, rows)
@@ -168,15 +186,31 @@ def _checked(
     strange = check.units(times, places, velocities, centre) if check.good else ""
     if check.good:
         check.reach(times, moment)
-    marks = check.events(events, times, places, velocities, masses) if check.good else ()
+    without = check.gaps(gaps, times, moment) if check.good else ()
+    marks = check.events(events, times, places, velocities, masses, without) if check.good else ()
     if check.good and normals is not None:
-        check.no_zeros("normal", normals)
+        if kind in SAILS:
+            check.stowed(normals, pushes)
+        else:
+            check.no_zeros("normal", normals)
     check.finish()
     marks = _with_jumps(marks, times, places, velocities, masses)
     note = "" if pushes.any() else strange  # thrust explains what gravity does not
     return _Given(
-        times, places, velocities, normals, pushes, masses, centre, moment, kind, columns, curves, marks, note
+        times, places, velocities, normals, pushes, masses, centre, moment, kind, columns, curves, marks, without, note
     )  # fmt: skip
+
+
+def _rows(values: Any, kept: np.ndarray, count: int) -> Any:
+    """Of what has as many rows as the trajectory was given with, those that hold data; anything else as it is."""
+    if isinstance(values, np.ma.MaskedArray):
+        found: np.ndarray = values
+    else:
+        try:
+            found = np.asarray(values)
+        except (TypeError, ValueError):  # rows of different lengths: said elsewhere
+            return values
+    return found[kept] if found.ndim and len(found) == count else values
 
 
 def _with_jumps(
@@ -195,10 +229,15 @@ def _derived(given: _Given, setting: Setting, bodies: dict[str, np.ndarray]) -> 
     size = np.linalg.norm(thrust, axis=1)
     normal = given.normal if given.normal is not None else np.where((size > 0)[:, None], thrust, axes[..., 0])
     normal = frames.unit(normal)
+    stowed: np.ndarray = ~np.any(normal, axis=1)
+    pitch, cone, clock = frames.pitch_cone_clock(axes, normal, thrust)
+    stance = np.where(stowed[:, None], axes[..., 0], normal)  # a bus without a sail has to stand somehow
     attitude = Attitude(
-        *frames.pitch_cone_clock(axes, normal, thrust),
+        np.where(stowed, np.nan, pitch),
+        np.where(stowed, np.nan, cone),
+        np.where(stowed, np.nan, clock),
         normal,
-        frames.quaternion(frames.body_axes(normal, axes[..., 1])),
+        frames.quaternion(frames.body_axes(stance, axes[..., 1])),
     )
     return Run(
         setting,
@@ -210,7 +249,7 @@ def _derived(given: _Given, setting: Setting, bodies: dict[str, np.ndarray]) -> 
         attitude,
         Thrust(thrust, frames.to_frame(axes, thrust), size, size > 0),
         elements(given.position, given.velocity, given.body.mu),
-        _turning(given) | given.environment,
+        _turning(given) | ({"stowed": stowed} if stowed.any() else {}) | given.environment,
         bodies=bodies,
         events=given.events,
     )
@@ -246,7 +285,8 @@ def _bodies(body: Body, epoch: np.datetime64 | None, time: np.ndarray, planets: 
 
 def _identity(run: Run) -> str:
     """Hash of the numbers and of what they are called."""
-    found = hashlib.sha256(repr((run.setting.resolved, str(run.setting.epoch), run.setting.craft)).encode())
+    told: tuple[object, ...] = (run.setting.resolved, str(run.setting.epoch), run.setting.craft)
+    found = hashlib.sha256(repr((*told, run.setting.gaps) if run.setting.gaps else told).encode())
     thrust, normal = run.thrust.acceleration, run.attitude.normal
     for values in (run.time, run.position, run.velocity, run.mass, thrust, normal, *run.environment.values()):
         found.update(np.ascontiguousarray(values).tobytes())

@@ -51,6 +51,11 @@ class Ephemeris:
     notes: tuple[str, ...] = ()
 
     @property
+    def without_data(self) -> tuple[tuple[float, float], ...]:
+        """The gaps as (start, end) pairs in s, as `trajectory` takes them."""
+        return tuple((float(self.time[row]), float(self.time[row + 1])) for row, _ in self.gaps)
+
+    @property
     def utc(self) -> np.datetime64:
         """The epoch in UTC. RecordingError for a time system that has no known distance from UTC, and before 1972."""
         try:

@@ -13,13 +13,14 @@ from sailviz import files
 from sailviz.calendar import DateError
 from sailviz.errors import RecordingError
 from sailviz.run import dates
-from sailviz.run.oem import Ephemeris, read_oem
+from sailviz.run.oem import SAME_PLACE, Ephemeris, read_oem
 
 LONGEST_VALUE = 200  # characters of a text field
 
 
 def write_oem(path: str | Path, ephemeris: Ephemeris, comments: Iterable[str] = ()) -> Path:
-    """Write an OEM, version 2.0, and read it back. km and km/s with the 16 digits that the standard allows, epochs to
+    """Write an OEM, version 2.0, and read it back. Over a gap nothing may be interpolated, and where the velocity jumps
+    nothing either: there a new segment begins. km and km/s with the 16 digits that the standard allows, epochs to
     the nanosecond. RecordingError where the file cannot be written or does not say what it should.
     """
     path = Path(path)
@@ -27,12 +28,26 @@ def write_oem(path: str | Path, ephemeris: Ephemeris, comments: Iterable[str] = 
     ns = np.round(e.time * 1e9).astype(np.int64)
     if not (np.isfinite(e.time).all() and np.isfinite(e.position).all() and np.isfinite(e.velocity).all()):
         raise RecordingError("an OEM holds finite numbers only")
-    if np.any(np.diff(ns) <= 0):
+    begins = _segments(e, ns)
+    if np.any(np.diff(ns) < 0) or not set(np.flatnonzero(np.diff(ns) == 0) + 1) <= set(begins):
         raise RecordingError("an OEM needs rows at least a nanosecond apart, in order of time")
     epochs = _epochs(e, ns)
     with files.writing(path, "ephemeris", lambda part: _check_back(read_oem(part), e, ns, path)) as part:
-        part.write_text("\n".join([*_head(e, epochs, comments), *_rows(e, epochs), ""]), encoding="ascii")
+        part.write_text("\n".join([*_head(), *_body(e, epochs, begins, comments), ""]), encoding="ascii")
     return path
+
+
+def _segments(e: Ephemeris, ns: np.ndarray) -> list[int]:
+    """The rows with which segments begin: the first, those after gaps, and those at which the velocity jumps."""
+    jumps = [row + 1 for row in np.flatnonzero(np.diff(ns) == 0).tolist() if _jumps(e, row)]
+    return sorted({0, *(row + 1 for row, _ in e.gaps), *jumps})
+
+
+def _jumps(e: Ephemeris, row: int) -> bool:
+    """Whether a row and the next one are one place with two velocities."""
+    apart = [np.linalg.norm(part[row + 1] - part[row]) for part in (e.position, e.velocity)]
+    size = [np.linalg.norm(part[row + 1]) for part in (e.position, e.velocity)]
+    return bool(apart[0] <= SAME_PLACE * size[0] and apart[1] > SAME_PLACE * size[1])
 
 
 def plain(text: str) -> str:
@@ -53,7 +68,7 @@ def _epochs(e: Ephemeris, ns: np.ndarray) -> list[str]:
     return dates.utc_texts(instants)
 
 
-def _head(e: Ephemeris, epochs: list[str], comments: Iterable[str]) -> list[str]:
+def _head() -> list[str]:
     stamp = os.environ.get("SOURCE_DATE_EPOCH")
     now = datetime.fromtimestamp(int(stamp), UTC) if stamp else datetime.now(UTC)
     return [
@@ -61,6 +76,19 @@ def _head(e: Ephemeris, epochs: list[str], comments: Iterable[str]) -> list[str]
         f"CREATION_DATE = {now:%Y-%m-%dT%H:%M:%S}",
         "ORIGINATOR = SAILVIZ",
         "",
+    ]
+
+
+def _body(e: Ephemeris, epochs: list[str], begins: list[int], comments: Iterable[str]) -> list[str]:
+    """The segments, those after the first without the comments."""
+    lines, rows = [], _rows(e, epochs)
+    for begin, end in zip(begins, [*begins[1:], len(rows)], strict=True):
+        lines += [*_meta(e, epochs[begin:end], () if begin else comments), *rows[begin:end], ""]
+    return lines[:-1]
+
+
+def _meta(e: Ephemeris, epochs: list[str], comments: Iterable[str]) -> list[str]:
+    return [
         "META_START",
         *(f"COMMENT {plain(line)}" for line in comments if plain(line)),
         f"OBJECT_NAME = {plain(e.name) or 'TRAJECTORY'}",

@@ -1,4 +1,5 @@
-"""Columns of one run at the times of another: what each kind of column allows, and what it costs.
+"""Columns of one run at the times of another: what each kind of column allows, and what it costs. Nothing is read off
+across a gap.
 
 position   cubic Hermite through positions and velocities   error h^4 / 384 x''''
 velocity   cubic through the four rows around               error h^4 / 43 v''''
@@ -14,8 +15,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from sailviz.run import gaps as spans
+
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
+
+    from sailviz.run.gaps import Gaps
 
 TURN = 2 * np.pi
 
@@ -26,14 +31,22 @@ def is_angle(name: str) -> bool:
 
 
 def at(
-    times: np.ndarray, name: str, grid: ArrayLike, values: ArrayLike, siblings: Mapping[str, np.ndarray] | None = None
+    times: np.ndarray,
+    name: str,
+    grid: ArrayLike,
+    values: ArrayLike,
+    siblings: Mapping[str, np.ndarray] | None = None,
+    gaps: Gaps = (),
 ) -> np.ndarray:
     """Values (n, ...) of the column `name`, given at `grid` (n,) s, increasing, at other times (m,) within it.
 
-    siblings : the other columns of the entity, among which a position finds its velocity.
+    siblings : the other columns of the entity, among which a position finds its velocity. gaps : (start, end) s without
+    data, where numbers are NaN and what is held stays as in the last row before.
     A time that is a row of the grid gets that row's value, bit for bit.
     """
     grid, values = np.asarray(grid, float), np.asarray(values)
+    if len(spans.last_rows(grid, gaps)):
+        return _piece_by_piece(times, name, grid, values, siblings or {}, gaps)
     if len(grid) == 1:
         return np.repeat(values, len(times), axis=0)
     left = np.clip(np.searchsorted(grid, times, side="right") - 1, 0, len(grid) - 2)
@@ -64,6 +77,26 @@ def at(
     return np.where(known.reshape(shape), values[exact], found)
 
 
+def _piece_by_piece(
+    times: np.ndarray,
+    name: str,
+    grid: np.ndarray,
+    values: np.ndarray,
+    siblings: Mapping[str, np.ndarray],
+    gaps: Gaps,
+) -> np.ndarray:
+    """`at`, each stretch between gaps from its own rows alone."""
+    held = np.clip(np.searchsorted(grid, times, side="right") - 1, 0, len(grid) - 1)
+    found = values[held]
+    if values.dtype.kind == "f":
+        found = np.full_like(found, np.nan)
+    for rows in spans.pieces(grid, gaps):
+        here = (times >= grid[rows][0]) & (times <= grid[rows][-1])
+        own = {key: column[rows] for key, column in siblings.items()}
+        found[here] = at(times[here], name, grid[rows], values[rows], own)
+    return found
+
+
 def hermite(s: np.ndarray, h: np.ndarray, x0: np.ndarray, x1: np.ndarray, v0: np.ndarray, v1: np.ndarray) -> np.ndarray:
     """The cubic with values x and slopes v at both ends of an interval of length h, at its fraction s."""
     found: np.ndarray = (
@@ -87,7 +120,7 @@ def through_four(times: np.ndarray, grid: np.ndarray, values: np.ndarray, left: 
     return found
 
 
-def gaps(name: str, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def misses(name: str, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """|a - b|, modulo a turn for angles, up to the sign for quaternions; 0 where both are NaN or the same infinity, inf
     where only one is.
     """
@@ -103,9 +136,16 @@ def gaps(name: str, a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.where(same, 0.0, np.where(np.isnan(gap), np.inf, gap))
 
 
-def cost(name: str, grid: np.ndarray, values: ArrayLike, siblings: Mapping[str, np.ndarray] | None = None) -> float:
+def cost(
+    name: str,
+    grid: np.ndarray,
+    values: ArrayLike,
+    siblings: Mapping[str, np.ndarray] | None = None,
+    gaps: Gaps = (),
+) -> float:
     """About the largest error that `at` makes on this grid: two of three rows are left out, interpolated, and the miss
-    divided by what a third of the spacing gains. 0 for columns that are held, NaN with fewer than ten rows.
+    divided by what a third of the spacing gains. Rows beside a gap do not count. 0 for columns that are held, NaN with
+    fewer than ten rows.
     """
     values = np.asarray(values)
     if values.dtype.kind != "f":
@@ -116,7 +156,9 @@ def cost(name: str, grid: np.ndarray, values: ArrayLike, siblings: Mapping[str, 
     thinned = {key: column[third] for key, column in (siblings or {}).items()}
     inner = np.arange(1, 3 * (len(grid[third]) - 1))
     inner = inner[inner % 3 > 0]
-    miss = gaps(name, at(grid[inner], name, grid[third], values[third], thinned), values[inner])
+    for row in spans.last_rows(grid, gaps).tolist():
+        inner = inner[inner // 3 != row // 3]
+    miss = misses(name, at(grid[inner], name, grid[third], values[third], thinned), values[inner])
     cubic = name == "velocity_m_s" or (name == "position_m" and "velocity_m_s" in (siblings or {}))
     miss = miss[np.isfinite(miss)]
     return float(miss.max() / (81 if cubic else 9)) if len(miss) else np.nan

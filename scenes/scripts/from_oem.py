@@ -36,11 +36,12 @@ try:
         target,
         mu=MU[flight.center],
         epoch=flight.utc,
+        gaps=flight.without_data,
         title=flight.name.capitalize(),
         about=" ".join([f"Read from **{source.name}**.", *(f"{note[0].upper()}{note[1:]}." for note in flight.notes)]),
     )
 except RecordingError as error:
     refuse(error)
-for note in flight.notes:
+for note in (*flight.notes, *recorded.remarks):
     print(note)
 print(f"{flight.name}: {recorded.rows} rows round the {flight.center.title()}; recorded {target}")

@@ -31,7 +31,7 @@ from sailviz.recording.comparison.result import Comparison
 from sailviz.recording.comparison.tables import Evidence, Source, Table, evidence
 from sailviz.recording.comparison.tolerances import Tolerances
 from sailviz.recording.reader import EventRow
-from sailviz.run import resample
+from sailviz.run import gaps, resample
 from sailviz.words import duration
 
 
@@ -97,6 +97,14 @@ class Comparer:
             self.told.add(text)
             self.faults.append(text)
 
+    def _note(self, text: str) -> None:
+        if text not in self.told:
+            self.told.add(text)
+            self.notes.append(text)
+
+    def _gaps_of(self, side: str) -> tuple[tuple[float, float], ...]:
+        return (self.a if side == "A" else self.b).gaps
+
     def _compare_facts(self) -> None:
         one, two = self.a.facts, self.b.facts
         for name, said in (("body", "central body"), ("craft_kind", "craft"), ("ended", "reason of the end")):
@@ -108,6 +116,9 @@ class Comparer:
         if mu in one and mu in two and not math.isclose(one[mu], two[mu], rel_tol=1e-12):
             self.faults.append(f"gravitational parameter: {one[mu]:.12g} in A, {two[mu]:.12g} m³/s² in B")
         self._compare_epochs()
+        if len(self.a.gaps) != len(self.b.gaps) or not np.allclose(self.a.gaps, self.b.gaps, rtol=RELATIVE):
+            told = [gap_words(side.gaps) for side in (self.a, self.b)]
+            self.faults.append(f"without data: {told[0]} in A, {told[1]} in B")
         if one.get("identity") != two.get("identity") and "identity" in one and "identity" in two:
             self.notes.append(f"made from different scenes: {one['identity']} and {two['identity']}")
         if one.get("versions") != two.get("versions") and "versions" in one and "versions" in two:
@@ -173,9 +184,13 @@ class Comparer:
         start, end = max(a.time[0], b.time[0]), min(a.time[-1], b.time[-1])
         finer, coarse = ("B", a) if len(b) >= len(a) else ("A", b)
         times = coarse.time[(coarse.time >= start) & (coarse.time <= end)]
-        if not len(times):
+        known = times[~gaps.inside(times, self._gaps_of(finer))]
+        if not len(known):
             self._fault("A and B have no time in common")
             return None
+        if len(known) < len(times):
+            self._note(f"{len(times) - len(known):,} rows lie where {finer} is without data: they are not compared")
+        times = known
         if not self.interpolated:
             self.interpolated = True
             self.notes.append(
@@ -189,7 +204,7 @@ class Comparer:
         if pairing.times is None:
             return np.asarray(values[pairing.rows_a if side == "A" else pairing.rows_b])
         if pairing.finer == side:
-            return np.asarray(resample.at(pairing.times, name, table.time, values, table.columns))
+            return np.asarray(resample.at(pairing.times, name, table.time, values, table.columns, self._gaps_of(side)))
         return np.asarray(values[np.searchsorted(table.time, pairing.times)])
 
     def _compare_column(self, entity: str, name: str, a: Table, b: Table, pairing: Pairing) -> None:
@@ -204,7 +219,8 @@ class Comparer:
         interpolation = 0.0
         if pairing.interpolated:
             table = a if pairing.finer == "A" else b
-            interpolation = resample.cost(name, table.time, table.columns[name], table.columns)
+            without = self._gaps_of(pairing.finer)
+            interpolation = resample.cost(name, table.time, table.columns[name], table.columns, without)
         if atol is None:
             atol = default_tolerance(name, a.columns[name])
             atol = max(atol, COVERED * interpolation) if math.isfinite(interpolation) else atol
@@ -307,6 +323,13 @@ def numbered(events: Iterable[EventRow]) -> dict[tuple[str, int], EventRow]:
         found[name, count[name]] = event
         count[name] += 1
     return found
+
+
+def gap_words(spans: gaps.Gaps) -> str:
+    """How much is without data, in words."""
+    if not spans:
+        return "nothing"
+    return f"{duration(gaps.total(spans))} in {len(spans)} gap{'s' if len(spans) > 1 else ''}"
 
 
 def components(values: np.ndarray) -> str:

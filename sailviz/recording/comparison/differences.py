@@ -75,7 +75,7 @@ def difference(quantity: str, a: np.ndarray, b: np.ndarray, atol: float, rtol: f
     if a.dtype.kind != "f":
         gap, allowed = np.not_equal(a, b).astype(float), np.zeros(a.shape)
     else:
-        gap = resample.gaps(name, a, b)
+        gap = resample.misses(name, a, b)
         with np.errstate(invalid="ignore"):
             allowed = np.where(np.isfinite(a), atol + rtol * np.abs(a), atol)
     beyond = gap > allowed

@@ -65,6 +65,11 @@ class Evidence:
     views: Counter[tuple[str, str, str]] | None = None  # (kind, name, origin) -> how many
     picture: Callable[[], Iterator[Drawn]] | None = None  # (entity, name -> arrow column), one at a time
 
+    @property
+    def gaps(self) -> tuple[tuple[float, float], ...]:
+        """s, (start, end) of the spans without data."""
+        return tuple((float(start), float(end)) for start, end in self.facts.get("gaps_s", ()))
+
 
 def evidence(source: Source | Evidence, label: str = "") -> Evidence:
     """Recording, Run, or path of an .rrd or .npz file -> Evidence. RecordingError for anything that is none of them."""
@@ -106,7 +111,7 @@ def of_run(run: Run, label: str) -> Evidence:
         "versions": json.dumps(setting.versions, sort_keys=True),
         "accuracy": setting.accuracy,
         "text": setting.text,
-    }
+    } | ({"gaps_s": [list(gap) for gap in setting.gaps]} if setting.gaps else {})
     return Evidence(
         label,
         tuple(found),
@@ -130,6 +135,7 @@ def of_recording(recording: Recording, label: str) -> Evidence:
         scene = recording["/scene"]
         facts = {name: plain(scene[name][0]) for name in FACTS if name in scene}
         facts["complete"] = recording.complete
+        facts |= {"gaps_s": recording.gaps.tolist()} if len(recording.gaps) else {}
     elif not recording.complete:
         facts = {"complete": False} if recording.cut_off else {}
     return Evidence(
@@ -194,8 +200,8 @@ def of_npz(path: Path, label: str) -> Evidence:
 
 
 def plain(value: Any) -> Any:
-    """A numpy scalar as Python's own."""
-    return value.item() if isinstance(value, np.generic) else value
+    """A numpy scalar or array as Python's own."""
+    return value.tolist() if isinstance(value, np.generic | np.ndarray) else value
 
 
 def numeric(recording: Recording, name: str) -> bool:
@@ -285,5 +291,7 @@ def picture_of(recording: Recording) -> Iterator[Drawn]:
             steps = table["step"].to_numpy() if "step" in table.column_names else np.arange(len(table))
             for key in table.column_names:
                 if is_component(table[key].type):
-                    columns[short(key)] = (steps, table[key].combine_chunks())
+                    within = "step" not in table.column_names and short(key) in columns
+                    word = f"{short(key)} within gaps" if within else short(key)
+                    columns[word] = (steps, table[key].combine_chunks())
         yield name, columns

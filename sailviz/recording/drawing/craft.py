@@ -33,6 +33,8 @@ class CraftDrawing:
     force: str = "push"  # what it does, in a word
     lane: str = "thrust"  # the words and colours of its working and resting, in style.LANES
     sail_word: str = "sail"
+    stowable: tuple[str, ...] = ()  # parts of the shape that are not there while the sail is stowed
+    stowable_near: tuple[str, ...] = ()  # those of them that are only seen from close by
     flow_word: str = ""  # what comes from the Sun and acts on it, in a word
     flow_color: Color = tuple(style.SUN)
 
@@ -50,6 +52,17 @@ class Glow:
         if self._path and len(changed):
             scale = np.where(on[changed], 1.0, 1e-6)[:, None] * np.ones(3)
             self._picture.log_columns(self._path, index_of(changed), rr.Transform3D.columns(scale=f4(scale)))
+
+
+def log_stowing(
+    picture: Picture, shape: str, craft: CraftDrawing, index: Index, stowed: np.ndarray, near: bool
+) -> None:
+    """Of a sail that is stowed at times, stowed (n,) bool, only the bus is left then."""
+    if not stowed.any():
+        return
+    scale = np.where(stowed, 1e-6, 1.0)[:, None] * np.ones(3)
+    for part in (*craft.stowable, *(craft.stowable_near if near else ())):
+        picture.log_columns(f"{shape}/{part}", index, rr.Transform3D.columns(scale=f4(scale)))
 
 
 def log_tether(picture: Picture, path: str, start: float, width: float, thickness: float) -> None:

@@ -15,11 +15,12 @@ import rerun as rr
 from sailviz.recording import timelines
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.craft import CraftDrawing
-from sailviz.recording.drawing.log import Color, Picture
+from sailviz.recording.drawing.log import Color, Index, Picture
 from sailviz.recording.drawing.phrases import amount, push_unit
 from sailviz.recording.drawing.plot_column import FLAT, SHOWN_FROM, PlotView, corner, merged, nice_range, score
 from sailviz.recording.drawing.plots import RARE, Plot, plots_of
 from sailviz.recording.drawing.samples import Frame
+from sailviz.run import gaps
 from sailviz.run.arrays import Run, Setting
 
 PLOT_ROWS = 3000
@@ -61,6 +62,25 @@ class Swing:
     def scaled(self, factor: float) -> Swing:
         """The same in another unit."""
         return Swing(factor * self.low, factor * self.high, factor * self.total, self.count)
+
+
+@dataclass
+class Rows:
+    """Where values stand on the timelines, with one row more just within each gap, where there is none."""
+
+    index: Index
+    holes: np.ndarray  # (m,) numbers of values before which there is a gap
+
+    @staticmethod
+    def of(setting: Setting, number: np.ndarray, time: np.ndarray) -> Rows:
+        found = [gap for gap in setting.gaps if len(gaps.last_rows(time, [gap]))]
+        before = np.array([gaps.last_rows(time, [gap])[0] for gap in found], int)
+        numbers, times = np.insert(number, before + 1, number[before]), np.insert(time, before + 1, gaps.moments(found))
+        return Rows(timelines.time_columns(setting, numbers, times), before + 1)
+
+    def broken(self, values: np.ndarray) -> np.ndarray:
+        """Values (n, ...) with NaN within each gap."""
+        return np.insert(values, self.holes, np.nan, axis=0)
 
 
 class Curves:
@@ -105,7 +125,7 @@ class Curves:
             number, time = np.append(number, last.first), np.append(time, last.time)
             for plot in self.plots:
                 self._values[plot.path].append(plot.values(last))
-        index = timelines.time_columns(self._setting, number, time)
+        rows = Rows.of(self._setting, number, time)
         found: list[tuple[float, PlotView]] = []
         for plot in self.plots:
             values = np.concatenate(self._values[plot.path])
@@ -119,7 +139,7 @@ class Curves:
                 continue
             if worth < SHOWN_FROM and not wanted:
                 continue
-            view = self._write(plot, index, values)
+            view = self._write(plot, rows, values)
             found.append((worth if place is None else 1e3 - place, view))
         return [view for _, view in sorted(found, key=lambda pair: -pair[0])]
 
@@ -136,7 +156,7 @@ class Curves:
         for plot in self.plots:
             values = np.concatenate(self._values[plot.path])[:, 0]
             known = values[np.isfinite(values)]
-            if not plot.steady or not len(known) or np.ptp(known) > FLAT * np.abs(known).max():
+            if not plot.steady or len(known) < len(values) or np.ptp(known) > FLAT * np.abs(known).max():
                 continue
             mean = float(known.mean())
             if plot.handy:
@@ -149,7 +169,7 @@ class Curves:
         """Write what goes on and off -> paths of the lanes."""
         return self._lanes.write(self._picture, self._setting)
 
-    def _write(self, plot: Plot, index: list[rr.TimeColumn], values: np.ndarray) -> PlotView:
+    def _write(self, plot: Plot, rows: Rows, values: np.ndarray) -> PlotView:
         kept = merged(plot.names, values)
         shown = np.stack([values[:, k] for _, k in kept], 1)
         colors = [plot.colors[k] for _, k in kept]
@@ -163,7 +183,7 @@ class Curves:
             self._write_bands(plot, kept)
             curves = self._bands(plot, kept)[1]
         else:
-            self._write_lines(plot.path, index, shown, names, colors)
+            self._write_lines(plot.path, rows, shown, names, colors)
             curves = [shown[:, k] for k in range(len(kept))]
         if plot.from_zero:
             low = min(low, 0.0)
@@ -171,16 +191,13 @@ class Curves:
         legend = corner(curves, low, high) if len(kept) > 1 else ""
         return PlotView(plot.title, (f"{plot.path}/**",), low, high, legend)
 
-    def _write_lines(
-        self, path: str, index: list[rr.TimeColumn], values: np.ndarray, names: list[str], colors: list[Color]
-    ) -> None:
+    def _write_lines(self, path: str, rows: Rows, values: np.ndarray, names: list[str], colors: list[Color]) -> None:
         lines = rr.SeriesLines(
             names=names, colors=[list(color) for color in colors], widths=[style.WIDTH["plot"]] * len(names)
         )
         self._picture.log_static(path, lines)
-        self._picture.log_columns(
-            path, index, rr.Scalars.columns(scalars=np.where(np.isfinite(values), values, np.nan))
-        )
+        scalars = rows.broken(np.where(np.isfinite(values), values, np.nan))
+        self._picture.log_columns(path, rows.index, rr.Scalars.columns(scalars=scalars))
 
     def _banded(self, plot: Plot, kept: list[tuple[str, int]], whole: float) -> bool:
         """Whether some curve swings so much within a bin that a line would be a block."""
@@ -205,7 +222,7 @@ class Curves:
         filled, means = self._bands(plot, kept)
         time = self._frame.start + (filled + 0.5) / self._bins * self._setting.duration
         number = np.round((filled + 0.5) / self._bins * (self._setting.rows - 1)).astype(int)
-        index = timelines.time_columns(self._setting, number, time)
+        rows = Rows.of(self._setting, number, time)
         for place, (name, k) in enumerate(kept):
             low, high = swing.low[filled, k], swing.high[filled, k]
             color, path = list(plot.colors[k]), f"{plot.path}/{place}"
@@ -216,9 +233,39 @@ class Curves:
                 colors=[style.dim(color, BAND_SHADE)], widths=[0.0], names=[f"{name}, least to largest"]
             )
             picture.log_static(f"{path}/band", band)
+            low, high = rows.broken(low), rows.broken(high)
             columns = rr.Measurements.columns(values=0.5 * (low + high), variances=(0.5 * (high - low)) ** 2)
-            picture.log_columns(f"{path}/band", index, columns)
-            self._write_lines(f"{path}/mean", index, means[place][:, None], [f"{name}, mean"], [color])
+            picture.log_columns(f"{path}/band", rows.index, columns)
+            self._write_lines(f"{path}/mean", rows, means[place][:, None], [f"{name}, mean"], [color])
+
+
+@dataclass
+class GapEdges:
+    """A gap, s, with number and time of the first row after it."""
+
+    start: float
+    end: float
+    begun: bool = False  # whether there is a row before it
+    after: tuple[int, float] = (-1, np.inf)
+
+    @property
+    def between(self) -> bool:
+        """Whether rows stand on both sides."""
+        return self.begun and self.after[0] >= 0
+
+    def add(self, run: Run) -> None:
+        """A block of a run, all rows."""
+        late = int(np.searchsorted(run.time, self.end, "left"))
+        self.begun |= bool(len(run) and run.time[0] <= self.start)
+        if late < len(run) and self.after[0] < 0:
+            self.after = run.first + late, float(run.time[late])
+
+    def cut(self, states: list[str], rows: list[tuple[int, float]]) -> tuple[list[str], list[tuple[int, float]]]:
+        """The changes of a lane, one of them, changed or not, at the first row after the gap."""
+        k = int(np.searchsorted([time for _, time in rows], self.start, "right"))
+        if not self.between or k == 0 or (k < len(rows) and rows[k][0] == self.after[0]):
+            return states, rows
+        return [*states[:k], states[k - 1], *states[k:]], [*rows[:k], self.after, *rows[k:]]
 
 
 class Lanes:
@@ -231,6 +278,7 @@ class Lanes:
         self._craft = craft
         self._time = frame.start  # s, of the last row so far
         self._far = np.inf if frame.sun else UNKNOWN * frame.period
+        self._edges = [GapEdges(start, end) for start, end in first.setting.gaps]
         self._states: dict[str, list[str]] = {name: [] for name in self._names}
         self._rows: dict[str, list[tuple[int, float]]] = {name: [] for name in self._names}  # number and time of each
 
@@ -241,6 +289,8 @@ class Lanes:
             on = run.thrust.on if lane == "thrust" else run.environment[lane]
             states = np.where(np.asarray(on, bool), "on", "off")
             self._add(lane, run, np.where(far, "unknown", states) if lane == "sunlit" else states)
+        for edges in self._edges:
+            edges.add(run)
         self._time = float(run.time[-1])
 
     def _add(self, lane: str, run: Run, states: np.ndarray) -> None:
@@ -254,20 +304,27 @@ class Lanes:
     def write(self, picture: Picture, setting: Setting) -> list[str]:
         """Write the lanes that change, but not so often that nothing is read -> their paths."""
         shown = []
-        for lane, states in self._states.items():
+        for lane, known in self._states.items():
+            states, rows = known, self._rows[lane]
             changes = sum(state != "unknown" for state in states) - 1
+            for edges in self._edges:
+                states, rows = edges.cut(states, rows)
             if not changes > 0 or len(states) > MOST_CHANGES:
                 continue
             on, off = lane_style(self._craft.lane if lane == "thrust" else lane)
             configuration = rr.StateConfiguration(
-                values=["on", "off", "unknown"],
-                labels=[on[0], off[0], "between far rows"],
-                colors=[on[1], off[1], style.UNKNOWN],
+                values=["on", "off", "unknown", *(["no data"] if self._edges else [])],
+                labels=[on[0], off[0], "between far rows", *(["no data"] if self._edges else [])],
+                colors=[on[1], off[1], style.UNKNOWN, *([style.UNKNOWN] if self._edges else [])],
             )
             picture.log_static(lane_path(lane), configuration)
-            number, time = zip(*self._rows[lane], strict=True)
+            number, time = zip(*rows, strict=True)
             index = timelines.time_columns(setting, list(number), list(time))
             picture.log_columns(lane_path(lane), index, rr.StateChange.columns(state=states))
+            within = [(edges.start, edges.end) for edges in self._edges if edges.between]
+            if within:
+                index = timelines.between_rows(setting, gaps.moments(within))
+                picture.log_columns(lane_path(lane), index, rr.StateChange.columns(state=["no data"] * len(within)))
             shown.append(lane_path(lane))
         return shown
 

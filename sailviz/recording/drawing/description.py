@@ -8,6 +8,8 @@ import numpy as np
 
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.arrival_plane import MILLI_AU
+from sailviz.recording.drawing.phrases import clock
+from sailviz.run import gaps
 from sailviz.run.arrays import Event, Setting
 
 WALL = "the **wall on the trail** is the push: its height and brightness say how hard, its lean says which way"
@@ -26,6 +28,16 @@ def about(setting: Setting, notes: Iterable[str] = (), steady: Iterable[str] = (
     hints = [f"- {hint.strip()}" for hint in told]
     parts = [[setting.about.strip()], table, hints, *([words] for words in ends)]
     return "\n\n".join("\n".join(part) for part in parts if part)
+
+
+def gap_words(setting: Setting) -> list[str]:
+    """What is missing, if anything is."""
+    if not setting.gaps:
+        return []
+    size, word = clock(setting.duration)
+    times = f"{len(setting.gaps)} times" if len(setting.gaps) > 1 else "once"
+    missing = f"{gaps.total(setting.gaps) / size:.3g} {word.lower()}s"
+    return [f"**no data** {times}, {missing} in all: lines and curves are broken there, and what is seen is older"]
 
 
 def event_line(event: Event) -> str:

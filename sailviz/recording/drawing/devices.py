@@ -90,6 +90,8 @@ CRAFT = {
         close_size=9.5,
         true_size=lambda craft: craft.side,
         facing=True,
+        stowable=("film_lit", "film_dark", "booms", "vanes"),
+        stowable_near=("seams",),
         flow_word="sunlight",
     ),
     "electric-sail": CraftDrawing(
@@ -99,6 +101,8 @@ CRAFT = {
         true_size=lambda craft: craft.tether_length,
         glow="shape/sheath",
         slanted=True,
+        stowable=("tethers", "rim", "disc"),
+        stowable_near=("tips",),
         sail_word="E-sail",
         flow_word="wind",
         flow_color=style.WIND,

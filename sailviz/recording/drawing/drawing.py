@@ -13,7 +13,7 @@ from sailviz.recording import timelines
 from sailviz.recording.drawing.arrival_plane import arrivals_of
 from sailviz.recording.drawing.blueprint import blueprint
 from sailviz.recording.drawing.curves import Curves, words_of
-from sailviz.recording.drawing.description import WALL, about, event_line
+from sailviz.recording.drawing.description import WALL, about, event_line, gap_words
 from sailviz.recording.drawing.devices import CRAFT
 from sailviz.recording.drawing.ensemble_plots import plots_of_ensembles
 from sailviz.recording.drawing.ensembles import log_ensembles
@@ -21,6 +21,7 @@ from sailviz.recording.drawing.layout import Layout
 from sailviz.recording.drawing.log import Index, Picture
 from sailviz.recording.drawing.low_orbit import log_low_orbit, orbit_words
 from sailviz.recording.drawing.now_line import log_now
+from sailviz.recording.drawing.row_words import plain_words, sparse_words, stowed_words
 from sailviz.recording.drawing.sail_close_up import log_close_up
 from sailviz.recording.drawing.samples import Frame, Samples
 from sailviz.recording.drawing.story import Story, reach_of
@@ -41,6 +42,7 @@ class Drawing:
         self._rows: list[Run] = []
         self._numbers: list[np.ndarray] = []
         self._events: list[Event] = []
+        self.remarks: list[str] = []  # what the rows do not tell, once the run is drawn
         self._craft = CRAFT[setting.craft.kind]
         self._curves = Curves(picture, first, self._frame, self._craft)
         start = timelines.time_columns(setting, [first.first], first.time[:1])
@@ -75,6 +77,8 @@ class Drawing:
         story = Story(samples, self._frame, self._craft, tuple(self._events), reach)
         layout, notes, aside = self._draw(story, last)
         steady = self._curves.steady()
+        self.remarks = [plain_words(line) for line in (*gap_words(self._setting), *sparse_words(story))]
+        notes = [*notes, *gap_words(self._setting), *sparse_words(story), *stowed_words(story)]
         text = about(self._setting, notes, steady, aside)
         self._picture.log_static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
         log_now(self._picture, story)

@@ -7,6 +7,7 @@ pieces, each stamped at its last time, of which the view shows the rows before a
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import rerun as rr
@@ -29,12 +30,14 @@ ALPHA = {"past": 112, "future": 30, "ring": 80}
 
 @dataclass(frozen=True)
 class Fence:
-    """base, top : (n, 3) view units; strength (n,) 0 to 1; row (n,) of the story's rows."""
+    """base, top : (n, 3) view units; strength (n,) 0 to 1; row (n,) of the story's rows, -1 for points between two rows
+    that lie far apart. parts : (start, end) of the stretches without a gap, points start to end - 1."""
 
     base: np.ndarray
     top: np.ndarray
     strength: np.ndarray
     row: np.ndarray
+    parts: list[tuple[int, int]]
 
 
 def fence_of(story: Story) -> Fence | None:
@@ -50,8 +53,37 @@ def fence_of(story: Story) -> Fence | None:
         size = np.sqrt(size)
     steady = np.ptp(push) <= STEADY * reached
     strength = np.full(len(row), STEADY_SHARE) if steady else push / reached
-    base = story.position[row]
-    return Fence(base, base + high(story) * story.reach * size[:, None] * leaning(story)[row], strength, row)
+    lift = high(story) * story.reach * size[:, None] * leaning(story)[row]
+    return standing(story, row, lift, strength)
+
+
+def standing(story: Story, row: np.ndarray, lift: np.ndarray, strength: np.ndarray) -> Fence:
+    """The wall over rows (n,), lift (n, 3). Between rows far apart it follows the trail, its height and brightness
+    going evenly from one to the other; where there is no data there is none.
+    """
+    edges = set(np.searchsorted(row, story.breaks, side="right").tolist())
+    base, top, bright, rows, parts, begun, count = [], [], [], [], [], 0, 0
+    for k in range(len(row)):
+        if k in edges and k > 0:
+            parts.append((begun, count))
+            begun = count
+        elif k > 0 and row[k] == row[k - 1] + 1 and row[k - 1] in story.ways.lines:
+            line, share = (part[1:-1] for part in story.ways.lines[int(row[k - 1])])
+            between = lift[k - 1] + share[:, None] * (lift[k] - lift[k - 1])
+            base.append(line)
+            top.append(line + between)
+            bright.append(strength[k - 1] + share * (strength[k] - strength[k - 1]))
+            rows.append(np.full(len(line), -1))
+            count += len(line)
+        place = story.position[row[k]][None]
+        base.append(place)
+        top.append(place + lift[k])
+        bright.append(strength[k : k + 1])
+        rows.append(row[k : k + 1])
+        count += 1
+    parts.append((begun, count))
+    foot, crest, shade, numbers = (np.concatenate(part) for part in (base, top, bright, rows))
+    return Fence(foot, crest, shade, numbers, parts)
 
 
 def high(story: Story) -> float:
@@ -80,11 +112,10 @@ def log_fence(picture: Picture, story: Story, fence: Fence) -> None:
     if story.ring:
         log_ring(picture, fence)
         return
-    cuts = np.unique(np.linspace(0, len(fence.row) - 1, PIECES + 1).astype(int))
-    if len(cuts) < 2:
+    pairs = pieces_of(fence)
+    if not pairs:
         return
-    pairs = list(zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True))
-    index = story.samples.index_of(fence.row[cuts[1:]])
+    index = story.samples.index_of(fence.row[[b for _, b in pairs]])
     corners = [np.concatenate([fence.base[a : b + 1], fence.top[a : b + 1]]) for a, b in pairs]
     faces = [wall_faces(b - a + 1) for a, b in pairs]
     colors = [wall_colors(fence.strength[a : b + 1]) for a, b in pairs]
@@ -104,19 +135,36 @@ def log_fence(picture: Picture, story: Story, fence: Fence) -> None:
         picture.log_columns(f"{path}/edge", index, rr.LineStrips3D.columns(strips=edges))
 
 
+def pieces_of(fence: Fence) -> list[tuple[int, int]]:
+    """The first and the last point of each piece, which are rows; a piece ends where there is a gap."""
+    ends = np.flatnonzero(fence.row >= 0)
+    cuts = np.unique(np.linspace(0, len(ends) - 1, PIECES + 1).astype(int))
+    marks = np.unique(np.concatenate([ends[cuts], *((start, end - 1) for start, end in fence.parts)])).astype(int)
+    last = {end - 1 for _, end in fence.parts}
+    return [(a, b) for a, b in pairwise(marks.tolist()) if a not in last]
+
+
 def log_ring(picture: Picture, fence: Fence) -> None:
     """A ring is drawn once round, and stays."""
     corners = np.concatenate([fence.base, fence.top])
+    faces = [ring_faces(a, b, len(fence.base)) for a, b in fence.parts]
     picture.log_static(
         "/world/fence/ring",
         rr.Mesh3D(
             vertex_positions=f4(corners),
-            triangle_indices=wall_faces(len(fence.base)),
+            triangle_indices=np.concatenate(faces).astype(np.uint32),
             vertex_colors=wall_colors(fence.strength),
             albedo_factor=[255, 255, 255, ALPHA["ring"]],
         ),
     )
-    picture.log_lines("/world/fence/ring/edge", [fence.top], style.FENCE_EDGE["ring"], style.WIDTH["fence ring"])
+    edges = [fence.top[a:b] for a, b in fence.parts if b > a + 1]
+    picture.log_lines("/world/fence/ring/edge", edges, style.FENCE_EDGE["ring"], style.WIDTH["fence ring"])
+
+
+def ring_faces(start: int, end: int, count: int) -> np.ndarray:
+    """Triangles (m, 3) of the stretch from point `start` to `end` - 1 of a wall of `count` points at its foot."""
+    own = wall_faces(end - start).astype(int)
+    return np.where(own >= end - start, own - (end - start) + count, own) + start
 
 
 def wall_faces(count: int) -> np.ndarray:

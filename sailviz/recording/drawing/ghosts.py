@@ -33,6 +33,7 @@ def ghost_rows(story: Story) -> np.ndarray:
 def log_ghosts(picture: Picture, story: Story, size: float) -> None:
     """Write /world/ghosts. size : of the craft, view units."""
     rows = ghost_rows(story)
+    rows = rows[~story.stowed[rows]]
     if len(rows) == 0 or not (story.craft.facing or story.craft.slanted):
         return
     place, axes = story.position[rows], body_axes(story.normal[rows], story.samples.axes[rows][..., 1])

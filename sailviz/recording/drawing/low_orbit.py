@@ -14,7 +14,7 @@ import rerun as rr
 from sailviz.frames import body_axes, quaternion, to_frame, unit
 from sailviz.recording.drawing import cameras, style
 from sailviz.recording.drawing.cameras import Camera
-from sailviz.recording.drawing.craft import Glow, log_tether
+from sailviz.recording.drawing.craft import Glow, log_stowing, log_tether
 from sailviz.recording.drawing.layout import ALL, Space, Span
 from sailviz.recording.drawing.log import Picture, f4
 from sailviz.recording.drawing.orbit_plane import OrbitPlane, shell_words
@@ -125,7 +125,7 @@ def log_craft(picture: Picture, story: Story) -> None:
     count = len(samples)
     picture.log_pose("/world/rtn", index, translation=samples.position, quaternion=quaternion(samples.axes))
     ahead = np.tile([0.0, 1.0, 0.0], (count, 1))
-    picture.log_pose("/world/rtn/body", index, quaternion=quaternion(body_axes(samples.normal_rtn, ahead)))
+    picture.log_pose("/world/rtn/body", index, quaternion=quaternion(body_axes(samples.stance_rtn, ahead)))
     tether = tether_length(story)
     if craft.tether:
         craft.log_shape(picture, "/world/rtn/body/shape", True)
@@ -136,6 +136,7 @@ def log_craft(picture: Picture, story: Story) -> None:
     elif craft.pushes:
         craft.log_shape(picture, "/world/rtn/body/shape", True)
         picture.log_scale("/world/rtn/body/shape", FILM)
+        log_stowing(picture, "/world/rtn/body/shape", craft, index, story.stowed, True)
     else:
         log_drag_sail(picture, story)
     Glow(picture, "/world/rtn/body", craft).add(samples.index_of, samples.run.thrust.on)

@@ -7,9 +7,10 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from sailviz.recording.drawing.log import Picture
-from sailviz.recording.drawing.phrases import digits, moments, push_words
+from sailviz.recording.drawing.log import Index, Picture
+from sailviz.recording.drawing.phrases import digits, moments, on_day, push_words
 from sailviz.recording.drawing.story import GROUND, Story
+from sailviz.run import gaps as spans
 from sailviz.run.arrays import EnsembleStatistics
 
 ROWS = 700
@@ -36,11 +37,28 @@ def now_texts(story: Story) -> list[str]:
 
 def log_now(picture: Picture, story: Story) -> None:
     """Write /now: about ROWS rows, the first and the last among them."""
-    some = np.unique(np.linspace(0, len(story.time) - 1, min(ROWS, len(story.time))).astype(int))
+    some = np.linspace(0, len(story.time) - 1, min(ROWS, len(story.time))).astype(int)
+    some = np.unique(np.concatenate([some, story.breaks, story.breaks + 1]))
     texts = now_texts(story)
-    lines = ["### " + texts[k].replace(BETWEEN, "   ·   ") for k in some.tolist()]
+    log_lines(picture, story.samples.index_of(some), [texts[k] for k in some.tolist()])
+    if len(story.breaks):
+        log_lines(picture, story.gap_index, gap_texts(story))
+
+
+def log_lines(picture: Picture, index: Index, texts: list[str]) -> None:
+    """Write lines of the moment."""
+    lines = ["### " + text.replace(BETWEEN, "   ·   ") for text in texts]
     columns = rr.TextDocument.columns(text=lines, media_type=["text/markdown"] * len(lines))
-    picture.log_columns("/now", story.samples.index_of(some), columns)
+    picture.log_columns("/now", index, columns)
+
+
+def gap_texts(story: Story) -> list[str]:
+    """What is said where data ends: until when, and that what is seen is older."""
+    gaps, time = story.gaps, story.time
+    when = moments(np.concatenate([time[:1], spans.moments(gaps), time[-1:]]), story.setting.epoch)[1:-1]
+    until = [on_day(end - float(time[0]), story.duration) for _, end in gaps]
+    said = zip(when, until, strict=True)
+    return [BETWEEN.join([now, f"no data until {then}", "seen as it last was"]) for now, then in said]
 
 
 def distance_words(story: Story) -> list[str]:
@@ -72,7 +90,9 @@ def speed_words(story: Story, decimals: int) -> list[str]:
 def angle_words(story: Story) -> list[str]:
     """How far the sail is turned off what comes from the Sun."""
     sail, flow = story.craft.sail_word, story.craft.flow_word
-    return [f"{sail} {a:.0f}° off the {flow}" for a in np.degrees(story.samples.run.attitude.pitch).tolist()]
+    angles = np.degrees(story.samples.run.attitude.pitch).tolist()
+    words = zip(angles, story.stowed.tolist(), strict=True)
+    return [f"{sail} stowed" if stowed else f"{sail} {angle:.0f}° off the {flow}" for angle, stowed in words]
 
 
 def altitude_words(story: Story) -> list[str]:

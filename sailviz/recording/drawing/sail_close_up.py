@@ -12,7 +12,7 @@ import rerun as rr
 from sailviz.frames import body_axes, quaternion, unit
 from sailviz.recording.drawing import cameras, style
 from sailviz.recording.drawing.cameras import Camera
-from sailviz.recording.drawing.craft import Glow
+from sailviz.recording.drawing.craft import Glow, log_stowing
 from sailviz.recording.drawing.layout import Space
 from sailviz.recording.drawing.log import Color, Picture, f4
 from sailviz.recording.drawing.phrases import push_words
@@ -67,10 +67,11 @@ def log_close_up(picture: Picture, story: Story, below: int) -> Space:
 def log_body(picture: Picture, story: Story) -> None:
     """The craft in its attitude."""
     samples, craft = story.samples, story.craft
-    axes = body_axes(samples.normal_rtn, np.tile([0.0, 1.0, 0.0], (len(samples), 1)))
+    axes = body_axes(samples.stance_rtn, np.tile([0.0, 1.0, 0.0], (len(samples), 1)))
     picture.log_pose("/sail/body", story.index, quaternion=quaternion(axes))
     craft.log_shape(picture, "/sail/body/shape", True)
     picture.log_scale("/sail/body/shape", craft.close_size)
+    log_stowing(picture, "/sail/body/shape", craft, story.index, story.stowed, True)
     Glow(picture, "/sail/body", craft).add(samples.index_of, samples.run.thrust.on)
 
 
@@ -125,7 +126,7 @@ def log_flow(picture: Picture, story: Story, eye: np.ndarray) -> None:
     rays("/sail/flow", starts, falling, style.dim(color, 0.8), style.WIDTH["flow"])
     if film:
         light = np.array([1.0, 0.0, 0.0])
-        back = light - 2 * normal[:, :1] * normal
+        back = np.where(story.stowed[:, None], 0.0, light - 2 * normal[:, :1] * normal)
         rays("/sail/mirrored", ends, np.repeat(MIRRORED * back, len(hits), axis=0), style.MIRRORED, 1.0)
     middle = starts.mean(0)
     top = unit(np.cross(eye, unit(np.cross([0.0, 0.0, 1.0], eye))))
@@ -145,7 +146,8 @@ def log_angle(picture: Picture, story: Story) -> None:
     picture.log_arrows("/sail/normal", index, -NORMAL * normal)
     out = np.tile([1.0, 0.0, 0.0], (count, 1))
     directions = arcs(out, normal)
-    fan = -ANGLE * directions
+    out_there = ~story.stowed  # a stowed sail has no angle
+    fan = -ANGLE * directions * out_there[:, None, None]
     picture.log_strip_style("/sail/angle/arc", style.SUN, style.WIDTH["arc"])
     picture.log_strips("/sail/angle/arc", index, fan)
     k = np.arange(1, ARC)
@@ -154,14 +156,17 @@ def log_angle(picture: Picture, story: Story) -> None:
     columns = rr.Mesh3D.columns(vertex_positions=f4(corners.reshape(-1, 3))).partition([ARC + 1] * count)
     picture.log_columns("/sail/angle/fan", index, columns)
     picture.log_label_style("/sail/angle/name", style.SUN)
-    texts = [f"{angle:.0f}°" for angle in np.degrees(story.samples.run.attitude.pitch).tolist()]
-    picture.log_labels("/sail/angle/name", index, -ANGLE_NAME * directions[:, ARC // 2], texts)
+    angles = np.degrees(story.samples.run.attitude.pitch)
+    texts = [f"{angle:.0f}°" if np.isfinite(angle) else "" for angle in angles.tolist()]
+    place = np.where(out_there[:, None], -ANGLE_NAME * directions[:, ARC // 2], np.nan)
+    picture.log_labels("/sail/angle/name", index, place, texts)
 
 
 def log_clock(picture: Picture, story: Story) -> None:
     """The clock angle: on a circle about the radial line, from the orbit's normal to the sail's."""
-    attitude, index = story.samples.run.attitude, story.index
-    axial, radius = CLOCK * np.cos(attitude.pitch), CLOCK * np.sin(attitude.pitch)
+    attitude, index, length = story.samples.run.attitude, story.index, CLOCK * ~story.stowed
+    pitch, clock = np.nan_to_num(attitude.pitch), np.nan_to_num(attitude.clock)
+    axial, radius = length * np.cos(pitch), length * np.sin(pitch)
 
     def on_circle(angle: np.ndarray) -> np.ndarray:
         """Angles (n, k) from the orbit normal towards the transverse direction -> (n, k, 3)."""
@@ -169,7 +174,6 @@ def log_clock(picture: Picture, story: Story) -> None:
         return np.stack([x, radius[:, None] * np.sin(angle), radius[:, None] * np.cos(angle)], -1)
 
     full = np.tile(np.linspace(0, 2 * np.pi, 49), (len(story.time), 1))
-    clock = attitude.clock
     center = np.stack([axial, 0 * axial, 0 * axial], -1)[:, None]
     ends = [on_circle(0 * clock[:, None]), center, on_circle(clock[:, None])]
     for name, lines, color, width in (
@@ -183,6 +187,7 @@ def log_clock(picture: Picture, story: Story) -> None:
     place = on_circle(0.5 * clock[:, None])[:, 0] * [1.0, 1.3, 1.3] + np.stack(
         [0 * axial, 0 * axial, 0 * axial + 0.6], -1
     )
+    place = np.where(story.stowed[:, None], np.nan, place)
     texts = [f"clock {round(value) % 360}°" for value in np.degrees(clock).tolist()]
     picture.log_labels("/sail/clock/name", index, place, texts)
 

@@ -14,6 +14,7 @@ from sailviz.constants import AU, ROTATION_EARTH
 from sailviz.elements import Elements, state
 from sailviz.frames import quaternion, rtn, to_frame, unit
 from sailviz.recording import timelines
+from sailviz.run import gaps
 from sailviz.run.arrays import Run, Setting
 
 PICTURE_ROWS = 1500  # a replay of 30 s has about as many frames
@@ -31,9 +32,10 @@ STILL = 3e-3  # of the circular speed: a craft that is held in place drifts at l
 class Frame:
     """How a run is drawn; known from its first row, so that it never depends on the blocks in which the run arrives.
 
-    unit m is the length 1 of the system view. With sparse rows the craft is drawn on its osculating orbit, going round
-    `TURNS` times in all, and the Earth turns as much slower: distance, orbit and attitude are those of the row, the
-    place along the orbit is not. Only where rows are close for a while is it drawn where it was.
+    unit m is the length 1 of the system view. With sparse rows of more than `TURNS` revolutions the craft is drawn on
+    its osculating orbit, going round `TURNS` times in all, and the Earth turns as much slower: distance, orbit and
+    attitude are those of the row, the place along the orbit is not. Only where rows are close for a while is it drawn
+    where it was. In a run of fewer revolutions every row has its own place, however far apart they are.
     """
 
     unit: float
@@ -60,10 +62,11 @@ class Frame:
         length, name = unit_of(setting, distance)
         a = float(first.elements.semi_major_axis[0])
         period = 2 * np.pi * np.sqrt(a**3 / setting.body.mu) if np.isfinite(a) and a > 0 else np.inf
-        spacing = setting.duration / max(setting.rows - 1, 1) * timelines.stride(setting.rows, PICTURE_ROWS) / period
-        sparse = bool(spacing > SPARSE)
+        step = (setting.duration - gaps.total(setting.gaps)) / max(setting.rows - 1, 1)
+        spacing = step * timelines.stride(setting.rows, PICTURE_ROWS) / period
+        sparse = bool(spacing > SPARSE and setting.duration / period > TURNS)
         most = SPARSE_ROWS if sparse else PICTURE_ROWS
-        pace = setting.duration / max(setting.rows - 1, 1) * timelines.stride(setting.rows, most)
+        pace = step * timelines.stride(setting.rows, most)
         return Frame(
             unit=length,
             unit_name=name,
@@ -176,6 +179,16 @@ class Samples:
         return timelines.take(self.run, some)
 
     @property
+    def stowed(self) -> np.ndarray:
+        """Whether the sail is stowed: it has no normal. (n,) bool"""
+        return np.asarray(~self.normal_rtn.any(axis=1))
+
+    @property
+    def stance_rtn(self) -> np.ndarray:
+        """How the craft stands: its normal, or without one away from the central body. (n, 3)"""
+        return np.where(self.stowed[:, None], [1.0, 0.0, 0.0], self.normal_rtn)
+
+    @property
     def lit(self) -> np.ndarray:
         """Whether the craft is in sunlight: by its row where it is drawn in its own place, else outside of the shadow
         as it is drawn. (n,) bool
@@ -247,21 +260,6 @@ def orbits(run: Run, frame: Frame, count: int = 121) -> np.ndarray:
         )
         line, _ = state(a, eccentricity, inclination, raan, argument, anomaly, frame.mu)
     line = np.where(np.isfinite(line), line, run.position[:, None, :])
-    return np.asarray(line / frame.unit)
-
-
-def arc(run: Run, row: int, start: np.ndarray, gap: float, frame: Frame) -> np.ndarray:
-    """The way to a row on its osculating orbit: from the place nearest to `start` (3,) m, or once round where the gap
-    of so many s is longer than that. (k, 3) view units.
-    """
-    e = run.elements
-    a, eccentricity = float(e.semi_major_axis[row]), float(e.eccentricity[row])
-    radial, ahead = rtn(run.position[row], run.velocity[row])[:, :2].T
-    behind = np.mod(np.arctan2(-start @ ahead, start @ radial), 2 * np.pi)
-    if gap > 2 * np.pi * np.sqrt(a**3 / frame.mu):
-        behind = 2 * np.pi
-    anomaly = e.true_anomaly[row] - behind * np.linspace(1, 0, int(np.ceil(SMOOTH * behind / (2 * np.pi))) + 1)
-    line, _ = state(a, eccentricity, e.inclination[row], e.raan[row], e.argument[row], anomaly, frame.mu)
     return np.asarray(line / frame.unit)
 
 

@@ -8,9 +8,12 @@ from functools import cached_property
 import numpy as np
 
 from sailviz.frames import from_frame, unit
+from sailviz.recording import timelines
 from sailviz.recording.drawing.craft import CraftDrawing
 from sailviz.recording.drawing.log import Index
 from sailviz.recording.drawing.samples import Frame, Samples
+from sailviz.recording.drawing.ways import Ways, ways_of
+from sailviz.run import gaps
 from sailviz.run.arrays import Event, Run, Setting
 
 RING_DEPTH = 0.12  # change of distance, of the largest, up to which an orbit counts as one ring
@@ -79,6 +82,36 @@ class Story:
     def normal(self) -> np.ndarray:
         """(n, 3) of the sail, inertial, at the drawn place."""
         return np.asarray(from_frame(self.samples.axes, self.samples.normal_rtn))
+
+    @cached_property
+    def stance(self) -> np.ndarray:
+        """(n, 3) how the craft stands, inertial: its normal, or without one away from the centre."""
+        return np.asarray(from_frame(self.samples.axes, self.samples.stance_rtn))
+
+    @cached_property
+    def stowed(self) -> np.ndarray:
+        """(n,) whether there is a sail, but no film or wheel is out."""
+        return self.samples.stowed & (self.craft.facing or self.craft.slanted)
+
+    @cached_property
+    def breaks(self) -> np.ndarray:
+        """(m,) rows after which there is no data until the next row."""
+        return gaps.last_rows(self.time, self.setting.gaps)
+
+    @cached_property
+    def gaps(self) -> tuple[tuple[float, float], ...]:
+        """s, (start, end) of the spans without data that lie between drawn rows."""
+        return tuple(gap for gap in self.setting.gaps if len(gaps.last_rows(self.time, [gap])))
+
+    @property
+    def gap_index(self) -> Index:
+        """The timelines just within each gap."""
+        return timelines.between_rows(self.setting, gaps.moments(self.gaps))
+
+    @cached_property
+    def ways(self) -> Ways:
+        """How the trail gets from row to row where these lie far apart."""
+        return ways_of(self.samples, self.frame, self.breaks)
 
     @cached_property
     def thrust(self) -> np.ndarray:

@@ -13,7 +13,7 @@ from sailviz.frames import body_axes, quaternion, unit
 from sailviz.recording.contract import word
 from sailviz.recording.drawing import cameras, style
 from sailviz.recording.drawing.cameras import Camera
-from sailviz.recording.drawing.craft import Glow
+from sailviz.recording.drawing.craft import Glow, log_stowing
 from sailviz.recording.drawing.fence import Fence, fence_of, log_fence
 from sailviz.recording.drawing.ghosts import log_ghosts
 from sailviz.recording.drawing.landmarks import (
@@ -140,11 +140,12 @@ def log_craft(picture: Picture, story: Story, size: float, names: Names) -> None
     samples, index, craft = story.samples, story.index, story.craft
     picture.log_pose("/world/craft", index, translation=samples.position)
     picture.log_pose("/world/rtn", index, translation=samples.position, quaternion=quaternion(samples.axes))
-    turn = quaternion(body_axes(story.normal, samples.axes[..., 1]))
+    turn = quaternion(body_axes(story.stance, samples.axes[..., 1]))
     picture.log_pose("/world/craft/body", index, quaternion=turn)
     craft.log_shape(picture, "/world/craft/body/shape", False)
     if size > 0:
         picture.log_scale("/world/craft/body/shape", size)
+    log_stowing(picture, "/world/craft/body/shape", craft, index, story.stowed, False)
     Glow(picture, "/world/craft/body", craft).add(samples.index_of, samples.run.thrust.on)
     if story.most > 0:
         picture.log_arrow_style("/world/craft/push", style.PUSH, style.WIDTH["push"])

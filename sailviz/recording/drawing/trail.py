@@ -1,4 +1,6 @@
-"""The way flown and to be flown, as pieces that join on; where rows lie far apart, the orbit of the moment instead."""
+"""The way flown and to be flown, as pieces that join on, broken where there is no data; of sparse rows of many turns
+the orbit of the moment instead.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +9,10 @@ import numpy as np
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.layout import SO_FAR, TO_COME, Span
 from sailviz.recording.drawing.log import Picture
-from sailviz.recording.drawing.samples import SPARSE, arc, orbits, smooth_lines
+from sailviz.recording.drawing.samples import orbits, smooth_lines
 from sailviz.recording.drawing.story import Story
 
 STRIP = 4  # drawn rows in one piece
-GAP = 2 * SPARSE  # revolutions between rows over which a curve through both would miss the orbit
 RING_PAST = 0.9  # revolutions of a ring's trail
 
 
@@ -40,38 +41,32 @@ def log_trail(picture: Picture, story: Story) -> dict[str, Span]:
 
 
 def pieces_of(story: Story) -> tuple[np.ndarray, list[list[np.ndarray]]]:
-    """Rows (p,) at which pieces end, and the lines (k, 3) of each: a curve through its rows, broken where rows lie so
-    far apart that it would miss the orbit between them."""
+    """Rows (p,) at which pieces end, and the lines (k, 3) of each: through all of its rows, broken where there is no
+    data, and where nothing leads from row to row the next one's orbit of the moment."""
     samples, smooth = story.samples, story.frame.smooth
     line = smooth_lines(samples.run.time, samples.position, samples.velocity, smooth)
-    gaps = np.diff(samples.run.time)
-    arcs = {
-        k + 1: arc(samples.run, k + 1, samples.position[k], float(gaps[k]), story.frame)
-        for k in np.flatnonzero(wide(story, gaps)).tolist()
-    }
     last = len(samples) - 1
     starts = np.arange(0, max(last, 1), STRIP)
     ends = np.minimum(starts + STRIP, last)
-    return ends, [drawn(line, arcs, a, b, smooth) for a, b in zip(starts.tolist(), ends.tolist(), strict=True)]
+    broken = set(story.breaks.tolist())
+    return ends, [drawn(story, line, broken, a, b) for a, b in zip(starts.tolist(), ends.tolist(), strict=True)]
 
 
-def wide(story: Story, gaps: np.ndarray) -> np.ndarray:
-    """Whether the time (n - 1,) between rows is so long that a curve through both would miss the orbit."""
-    e = story.samples.run.elements
-    with np.errstate(invalid="ignore"):
-        turn = 2 * np.pi * np.sqrt(e.semi_major_axis[1:] ** 3 / story.frame.mu)
-        found: np.ndarray = (e.eccentricity[1:] < 1) & (gaps > GAP * turn)
-    return found
-
-
-def drawn(line: np.ndarray, arcs: dict[int, np.ndarray], start: int, end: int, pieces: int) -> list[np.ndarray]:
-    """The lines from row `start` to row `end`: the curve through all of them, broken where there are arcs."""
-    if end == start:
-        return [line[start * pieces : start * pieces + 1].repeat(2, axis=0)]
-    lines, begun = [], start
-    for k in range(start + 1, end + 1):
-        if k in arcs:
-            lines += [line[begun * pieces : (k - 1) * pieces + 1]] if k - 1 > begun else []
-            lines.append(arcs[k])
-            begun = k
-    return lines + ([line[begun * pieces : end * pieces + 1]] if end > begun else [])
+def drawn(story: Story, line: np.ndarray, broken: set[int], start: int, end: int) -> list[np.ndarray]:
+    """The lines from row `start` to row `end`. line : the cubics through all rows."""
+    pieces, ways = story.frame.smooth, story.ways
+    lines, now = [], [line[start * pieces][None]]
+    for k in range(start, end):
+        after = line[(k + 1) * pieces][None]
+        if k in broken or k in ways.open:
+            lines += [now, [ways.open[k]]] if k in ways.open else [now]
+            now = [after]
+        elif k in ways.lines:
+            now.append(ways.lines[k][0][1:])
+        else:
+            now.append(line[k * pieces + 1 : (k + 1) * pieces + 1])
+    joined = [np.concatenate(part) for part in [*lines, now]]
+    # a row on its own, with no way to it or from it, is drawn as a dot; at the start of a piece it has been drawn
+    alone = [k for k, part in enumerate(joined) if len(part) == 1]
+    kept = [part for k, part in enumerate(joined) if k not in alone or (k > 0 or start == 0 or len(joined) == 1)]
+    return [part.repeat(2, axis=0) if len(part) == 1 else part for part in kept if len(part)]

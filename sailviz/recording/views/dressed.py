@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pyarrow as pa
 
 from sailviz.recording.drawing import style
 from sailviz.recording.reader import FilePath, read
@@ -48,13 +49,15 @@ def words_of(path: FilePath) -> Words:
     title = recording.title
     if "/now" not in recording.entities:
         return Words(title, np.zeros(0), [])
-    table = recording["/now"]
-    step = np.asarray(table.timeline("step"), float)
-    time = np.asarray(table.timeline("sim_time").astype("timedelta64[ns]").astype(np.int64), float)
-    span = time[-1] - time[0]
-    share = (time - time[0]) / span if span > 0 else 0 * step
-    lines = [str(text).removeprefix("### ") for text in np.ravel(table["text"])]
-    return Words(title, share, lines)
+    times, texts = [], []
+    for table in recording["/now"].tables:  # of rows, and of gaps between them
+        times.append(table["sim_time"].cast(pa.int64()).to_numpy().astype(float))
+        texts += [text[0] for text in table["TextDocument:text"].to_pylist()]
+    time = np.concatenate(times)
+    order = np.argsort(time, kind="stable")
+    time, span = time[order], time.max() - time.min()
+    share = (time - time[0]) / span if span > 0 else 0 * time
+    return Words(title, share, [texts[k].removeprefix("### ") for k in order.tolist()])
 
 
 def dress(png: bytes, words: Words, share: float) -> bytes:

@@ -28,7 +28,14 @@ def arc(line, start, end, angle):
 
 def angle_arc(f, entity):
     """On the sunward side, from the ray to the normal, through the pitch angle of /attitude."""
-    arc(-strips(f, entity), outward(f, entity), seen(f, entity, f.truth.normal), f.truth.pitch)
+    sailing(-strips(f, entity), f, entity)
+
+
+def sailing(line, f, entity):
+    """Arcs (n, k, 3) of the pitch angle, and nothing in the rows of a stowed sail."""
+    there = ~f.truth.stowed
+    assert not line[~there].any(), "a stowed sail has an angle"
+    arc(line[there], outward(f, entity)[there], seen(f, entity, f.truth.normal)[there], f.truth.pitch[there])
 
 
 def angle_fan(f, entity):
@@ -40,7 +47,7 @@ def angle_fan(f, entity):
         assert not points[0].any()
         assert faces.tolist() == [[0, k, k + 1] for k in range(1, len(points) - 1)]
         lines.append(points[1:])
-    arc(-np.array(lines), outward(f, entity), seen(f, entity, f.truth.normal), f.truth.pitch)
+    sailing(-np.array(lines), f, entity)
     assert hue(f.picture.color(entity, "Mesh3D:albedo_factor")[0]) == "yellow"
 
 
@@ -96,21 +103,29 @@ def clock_arc(f, entity):
 
 def angle_word(f, entity):
     """The sail's angle in whole degrees, beside its arc."""
-    for angle, text in zip(np.degrees(f.truth.pitch), texts(f, entity), strict=True):
-        assert abs(int(re.fullmatch(r"(\d+)°", text).group(1)) - angle) <= 0.5 + 1e-9
+    for angle, text, stowed in zip(np.degrees(f.truth.pitch), texts(f, entity), f.truth.stowed, strict=True):
+        assert stowed == (text == "")
+        assert stowed or abs(int(re.fullmatch(r"(\d+)°", text).group(1)) - angle) <= 0.5 + 1e-9
     normal, out = seen(f, entity, f.truth.normal), outward(f, entity)
     for row, spot in enumerate(spots(f, entity)):
+        assert len(spot) == (not f.truth.stowed[row])
+        if f.truth.stowed[row]:
+            continue
         same_angle(angle_between(-spot[0], out[row]), 0.5 * f.truth.pitch[row], 0.05)
         same_angle(angle_between(-spot[0], normal[row]), 0.5 * f.truth.pitch[row], 0.05)
 
 
 def clock_word(f, entity):
     """The clock angle in whole degrees, in words."""
-    for angle, text in zip(np.degrees(f.truth.clock), texts(f, entity), strict=True):
+    for angle, text, stowed in zip(np.degrees(f.truth.clock), texts(f, entity), f.truth.stowed, strict=True):
+        if stowed:
+            continue
         found = int(re.fullmatch(r"clock (\d+)°", text).group(1))
         assert 0 <= found < 360
         assert abs((found - angle + 180) % 360 - 180) <= 0.5 + 1e-9
-    assert all(np.isfinite(spot).all() and len(spot) == 1 for spot in spots(f, entity))
+    there = np.array([len(spot) for spot in spots(f, entity)])
+    assert np.array_equal(there, ~f.truth.stowed)
+    assert all(np.isfinite(spot).all() for spot in spots(f, entity))
 
 
 def push_word(f, entity):
@@ -147,7 +162,7 @@ def mirrored(f, entity):
     back = out - 2 * np.sum(out * normal, 1, keepdims=True) * normal
     for row in some(f):
         origins, vectors = f.picture.arrow(entity, f.truth.steps[row])
-        same_direction(vectors, np.broadcast_to(back[row], vectors.shape), 1e-3)
+        same_direction(vectors, np.broadcast_to(0 if f.truth.stowed[row] else back[row], vectors.shape), 1e-3)
         rays, falling = f.picture.arrow("/sail/flow", f.truth.steps[row])
         same_place(origins, rays + falling, size=100)
 

@@ -53,13 +53,27 @@ def facing(f, entity, row) -> np.ndarray:
     return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).sum(0) / 2
 
 
+def out(f, rows) -> list[int]:
+    """Of some rows those in which the sail is not stowed."""
+    return [int(row) for row in rows if not f.truth.stowed[row]]
+
+
+def stowing(f, entity):
+    """A part of the sail is there in every row in which it is out, and in none in which it is stowed."""
+    parent = entity.rsplit("/", 1)[0]
+    shown = np.array([f.picture.pose(entity, step, parent)[0, 0] for step in f.truth.steps])
+    assert np.all(shown[~f.truth.stowed] == 1), "a sail that is out is not drawn"
+    assert np.all(shown[f.truth.stowed] < GONE), "a stowed sail is drawn"
+
+
 def film(f, entity):
     """The side of the film that is visible from the Sun is golden, the other one blue; its normal is /attitude/normal;
     it bulges away from the light and has the side of the square that is told."""
     normal = seen(f, entity, f.truth.normal)
     side = {FRONT: 1.0, BACK: -1.0}[int(f.picture.fixed(entity, "Mesh3D:face_rendering")[0])]
     word = hue(f.picture.color(entity, "Mesh3D:albedo_factor")[0])
-    for row in some(f):
+    stowing(f, entity)
+    for row in out(f, some(f)):
         drawn = facing(f, entity, row)
         same_direction(drawn, normal[row], 0.05)  # a smooth mesh of a few hundred triangles
         light = normal[row] if f.truth.round_planet else outward(f, entity)[row]  # there the film's own word counts
@@ -73,7 +87,9 @@ def film(f, entity):
 
 def flat(f, entity, thickness=0.03, reach=(0.0, 1.1)):
     """A part that lies in the plane across the normal; reach : bounds of its farthest point, in sizes."""
-    for row in some(f, 4):
+    if not entity.endswith("/hub"):
+        stowing(f, entity)
+    for row in out(f, some(f, 4)):
         points = parts(f, entity, row) / size(f, entity)
         assert np.abs(points[:, 2]).max() < thickness
         assert reach[0] < np.linalg.norm(points[:, :2], axis=1).max() < reach[1]
@@ -110,7 +126,8 @@ def seams(f, entity):
 
 def tethers(f, entity):
     """Tethers of an electric sail reach from the hub to its rim, evenly all round, across the normal."""
-    for row in some(f, 4):
+    stowing(f, entity)
+    for row in out(f, some(f, 4)):
         lines = np.array(lines_in_body(f, entity, row)) / size(f, entity)
         same_place(lines[..., 2], 0 * lines[..., 2], size=10)
         same_place(np.linalg.norm(lines[:, 1], axis=1), np.ones(len(lines)), size=10)
@@ -120,7 +137,8 @@ def tethers(f, entity):
 
 def rim(f, entity):
     """A circle of the sail's radius across the normal."""
-    for row in some(f, 4):
+    stowing(f, entity)
+    for row in out(f, some(f, 4)):
         (line,) = lines_in_body(f, entity, row)
         same_place(line[:, 2], 0 * line[:, 2], size=10 * size(f, entity))
         same_place(np.linalg.norm(line, axis=1), np.full(len(line), size(f, entity)), size=10 * size(f, entity))

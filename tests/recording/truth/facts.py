@@ -115,6 +115,9 @@ class Truth:
         self.mu, self.radius = float(self.scene["body_mu_m3_s2"]), float(self.scene["body_radius_m"])
         self.body, self.kind = self.scene["body"], self.scene["craft_kind"]
         self.resolved = recording.resolved
+        scene = recording["/scene"]
+        self.gaps = np.array(scene.get("gaps_s", []), float).reshape(-1, 2)
+        self.stowed = ~np.any(self.normal, axis=1)
 
     def __len__(self) -> int:
         return len(self.time)
@@ -138,6 +141,13 @@ class Truth:
     @property
     def round_planet(self) -> bool:
         return self.body != "Sun" and self.radius > 0
+
+    @cached_property
+    def breaks(self) -> list[int]:
+        """Rows after which there is no data until the next row."""
+        found = {int(np.flatnonzero(self.time <= start)[-1]) for start, _ in self.gaps}
+        assert all(self.time[row + 1] >= end for row, (_, end) in zip(sorted(found), self.gaps, strict=True))
+        return sorted(found)
 
     @cached_property
     def duration(self) -> float:

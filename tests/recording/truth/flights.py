@@ -138,6 +138,60 @@ def own_point():
     return trajectory(time, position, velocity, mu=5.0, body="Bennu", title="Dust")
 
 
+def kepler(time, mu, position, velocity):
+    """Places and velocities of an unpowered flight, by SciPy's DOP853."""
+    from scipy.integrate import solve_ivp
+
+    def fall(_, y):
+        return np.concatenate([y[3:], -mu * y[:3] / np.linalg.norm(y[:3]) ** 3])
+
+    y = solve_ivp(fall, (0, time[-1]), [*position, *velocity], "DOP853", time, rtol=1e-12, atol=1e-6).y.T
+    return y[:, :3], y[:, 3:]
+
+
+def own_gaps():
+    """A sail that is stowed for a while, twice without data: rows that are lost, and a silence between rows."""
+    time = 420 * DAY * np.linspace(0, 1, 85)
+    position, velocity = kepler(time, MU_SUN, [0.8 * AU, 0, 0], [2e3, 36e3, 6e3])
+    out = position / np.linalg.norm(position, axis=1, keepdims=True)
+    normal = out + 0.6 * tumbling(85, 2, 0.3)
+    thrust = 2e-6 * normal
+    normal[60:68] = thrust[60:68] = 0.0
+    lost = slice(20, 33)
+    position[lost] = velocity[lost] = normal[lost] = np.nan
+    thrust[lost] = 0.0
+    kept = np.r_[0:45, 52:85]
+    silence = [(time[44] + DAY, time[52] - DAY)]
+    options = {"normal": normal[kept], "thrust": thrust[kept], "side": 30.0, "epoch": "2031-04-01"}
+    about = "The clock goes round."
+    return trajectory(time[kept], position[kept], velocity[kept], gaps=silence, about=about, **options)
+
+
+def own_wheel():
+    """An E-sail that is stowed at its end, without a date."""
+    time = 300 * DAY * np.linspace(0, 1, 41)
+    position, velocity = kepler(time, MU_SUN, [AU, 0, 0], [0, 30e3, 1e3])
+    normal = position / AU + 0.3 * tumbling(41, 1, 0.2)
+    thrust = 1e-6 * normal
+    normal[30:] = thrust[30:] = 0.0
+    return trajectory(time, position, velocity, normal=normal, thrust=thrust, device="electric-sail")
+
+
+def own_sparse():
+    """Five rows in each revolution of an eccentric orbit, and a gap."""
+    time = np.linspace(0, 4 * 365.25 * DAY, 21)
+    position, velocity = kepler(time, MU_SUN, [0.7 * AU, 0, 0], [0, 40e3, 5e3])
+    return trajectory(time, position, velocity, gaps=[(time[12], time[13])], title="Five rows a turn")
+
+
+def own_low_gap():
+    """Round the Earth, two revolutions without data."""
+    time = np.concatenate([np.arange(10) * 300.0, 14_700 + np.arange(10) * 300.0])
+    position, velocity = kepler(time, MU_EARTH, [7e6, 0, 0], [0, 3773.0, 6535.0])
+    options = {"mu": MU_EARTH, "epoch": "2031-03-01", "gaps": [(time[9], time[10])]}
+    return trajectory(time, position, velocity, **options)
+
+
 SMALL = {"propagation__outputs": 31}
 FLIGHTS: dict[str, Callable[[], sailviz.Run]] = {
     "displaced": scene(
@@ -171,5 +225,9 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run]] = {
     "own thruster": own_thruster,
     "own film": own_film,
     "own point": own_point,
+    "own gaps": own_gaps,
+    "own wheel": own_wheel,
+    "own sparse": own_sparse,
+    "own low gap": own_low_gap,
 }
 SLOWED = ("decay", "drag", "own point")

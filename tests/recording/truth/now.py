@@ -35,7 +35,7 @@ def told(text: str, true: float):
 
 def line(f, entity):
     """Every part of every line is what the row says: date, day, distance, speed, push, angle, altitude, drag, light,
-    spread."""
+    spread; and of every gap that there is no data, from its beginning until the next row, which has a line."""
     steps, lines = f.picture.rows(entity, "TextDocument:text")
     assert steps[0] == 0
     assert steps[-1] == f.truth.steps[-1]
@@ -47,6 +47,18 @@ def line(f, entity):
             assert len(found) == 1, f"nobody knows {words!r}"
             check, match = found[0]
             check(f, int(step), *match.groups())
+    within = sorted(f.picture.between[entity]["TextDocument:text"])
+    assert len(within) == len(f.truth.gaps), "a gap is not told"
+    for (ns, (text,)), (start, end), row in zip(within, f.truth.gaps, f.truth.breaks, strict=True):
+        assert start < ns * 1e-9 < start + 0.01 * (end - start)
+        assert row + 1 in steps
+        when, *said = re.split(r"\s*·\s*(?=Day|Hour|no data|seen)", text.removeprefix("### "))
+        counted = re.fullmatch(r"(Day|Hour) ([\d.]+) of ([\d.]+)", said[0] if len(said) == 3 else when)
+        size = {"Day": DAY, "Hour": 3600.0}[counted.group(1)]
+        told(counted.group(2), (ns * 1e-9 - f.truth.time[0]) / size)
+        until = re.fullmatch(rf"no data until {counted.group(1).lower()} ([\d.]+)", said[-2])
+        told(until.group(1), (end - f.truth.time[0]) / size)
+        assert said[-1] == "seen as it last was"
 
 
 @part(r"(\d{4}-\d\d-\d\d)(?: (\d\d:\d\d))?")
@@ -101,8 +113,15 @@ def force(f, row, value):
 
 @part(r"(sail|E-sail) (\d+)° off the (sunlight|wind)")
 def angle(f, row, sail, value, flow):
+    assert not f.truth.stowed[row]
     told(value, np.degrees(f.truth.pitch[row]))
     assert (sail, flow) == {"solar-sail": ("sail", "sunlight"), "electric-sail": ("E-sail", "wind")}[f.truth.kind]
+
+
+@part(r"(sail|E-sail) stowed")
+def stowed(f, row, sail):
+    assert f.truth.stowed[row]
+    assert sail == {"solar-sail": "sail", "electric-sail": "E-sail"}[f.truth.kind]
 
 
 @part(r"(-?\d+) km up")

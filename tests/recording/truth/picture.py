@@ -17,6 +17,10 @@ ROW_ID = "rerun.controls.RowId"
 CLOCKS = ("step", "sim_time", "utc")
 
 
+def timed(batch) -> bool:
+    return "sim_time" in batch.schema.names
+
+
 class Picture:
     """Components of every entity by name, e.g. "Arrows3D:vectors": static ones, and rows by their step."""
 
@@ -25,11 +29,13 @@ class Picture:
         self._static: dict[str, dict] = defaultdict(dict)
         self._rows: dict[str, dict] = defaultdict(lambda: defaultdict(list))
         self.clocks: dict[str, set[tuple]] = defaultdict(set)  # step, sim_time and utc in ns of each row
+        self.between: dict[str, dict[str, list[tuple]]] = defaultdict(lambda: defaultdict(list))  # ns, value: no step
         newest: dict[tuple, bytes] = {}
         for chunk in reader.stream():
             batch = chunk.to_record_batch()
             ids = batch.column(ROW_ID).to_pylist()
             steps = batch.column("step").to_pylist() if "step" in batch.schema.names else None
+            loose = batch.column("sim_time").cast(pa.int64()).to_pylist() if steps is None and timed(batch) else None
             if steps is not None:
                 self.clocks[chunk.entity_path].update(zip(*(ticks(batch, name) for name in CLOCKS), strict=True))
             for name in (name for name in batch.schema.names if ":" in name):
@@ -38,7 +44,9 @@ class Picture:
                     if not column[row].is_valid:
                         continue
                     value = plain(column[row].values)
-                    if steps is not None:
+                    if loose is not None:
+                        self.between[chunk.entity_path][name].append((loose[row], value))
+                    elif steps is not None:
                         self._rows[chunk.entity_path][name].append((steps[row], row_id, value))
                     elif row_id >= newest.get((chunk.entity_path, name), b""):
                         newest[chunk.entity_path, name] = row_id

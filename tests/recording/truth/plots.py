@@ -74,6 +74,10 @@ def drawn_series(f, entity):
     steps, values = f.picture.rows(entity, "Scalars:scalars")
     names = f.picture.fixed(entity, "SeriesLines:names")
     values = np.array(values)
+    again = np.flatnonzero(np.diff(steps) == 0) + 1
+    assert steps[again].tolist() == f.truth.breaks, "a curve leads over a gap"
+    assert not np.isfinite(values[again]).any(), "a value where there is no data"
+    steps, values = np.delete(steps, again), np.delete(values, again, axis=0)
     assert values.shape == (len(f.truth), len(names))
     assert np.array_equal(steps, f.truth.steps)
     return values, names
@@ -186,7 +190,8 @@ def from_earth(f, entity, *_):
 
 
 def angles(f, entity, *_):
-    """Pitch and cone; no cone without thrust."""
+    """Pitch and cone; no cone without thrust, neither of a stowed sail."""
+    assert np.array_equal(np.isnan(f.truth.pitch), f.truth.stowed)
     pushed = np.any(f.truth.thrust, axis=1)
     series(f, entity, {"sail": f.truth.pitch, "push": np.where(pushed, f.truth.cone, np.nan)})
 
@@ -195,6 +200,8 @@ def clock(f, entity, *_):
     """The clock angle, in whichever turn does not jump."""
     values, _ = drawn_series(f, entity)
     off = np.radians(values[:, 0]) - f.truth.clock
+    assert np.array_equal(np.isnan(off), f.truth.stowed)
+    off = off[~f.truth.stowed]
     assert np.abs(off - 2 * np.pi * np.round(off / (2 * np.pi))).max() < 1e-9
     assert hue(f.picture.color(entity, "SeriesLines:colors")[0]) == "pink"
     assert unit_of(f, entity) == "deg"
@@ -236,6 +243,7 @@ def si(name: str, values):
 LANES = {  # what a truth value means in words
     "thrust": ("Thrust on", "Coast"),
     "sunlit": ("Sunlit", "Eclipse"),
+    "stowed": ("Sail stowed", "Sail out"),
     "force_law_valid": ("Force law valid", "Outside its range"),
 }
 
@@ -244,7 +252,8 @@ LANE_OF = {"push": "thrust", "light": "sunlit"}  # words on lanes for columns
 
 
 def lane(f, entity):
-    """On and off as the column says, row by row; unknown only where rows are far apart on their orbit."""
+    """On and off as the column says, row by row; unknown only where rows are far apart on their orbit; and from the
+    beginning of each gap "no data" until the next row."""
     name = LANE_OF.get(entity.strip("/"), entity.strip("/"))
     column = f.truth.on if name == "thrust" else f.truth.environment[name].astype(bool)
     values, labels = (f.picture.fixed(entity, f"StateConfiguration:{key}") for key in ("values", "labels"))
@@ -262,6 +271,12 @@ def lane(f, entity):
             assert gap[row] > 0.2 * f.truth.period
         else:
             assert told[shown] == (on if column[row] else off), f"row {row}: {told[shown]}"
+    within = sorted(f.picture.between[entity]["StateChange:state"])
+    assert [value for _, (value,) in within] == ["no data"] * len(f.truth.gaps)
+    assert told.get("no data", "no data") == "no data"
+    for (ns, _), (start, end), row in zip(within, f.truth.gaps, f.truth.breaks, strict=True):
+        assert start < ns * 1e-9 < end
+        assert row + 1 in f.picture.rows(entity, "StateChange:state")[0], "no data goes on after the gap"
     bright, dark = f.picture.color(entity, "StateConfiguration:colors")[:2, :3]
     assert name != "sunlit" or bright.sum() > 2 * dark.sum()
 
@@ -296,6 +311,7 @@ def about(f, entity):
     assert many or ("**wall on the trail**" in text) == any(e.startswith("/world/fence") for e in f.picture.entities)
     if "the **turquoise** arrow is the primer" in text:
         assert "/sail/primer" in f.picture.entities
+    rows_told(f, text)
     steady(f, text)
     if f.truth.round_planet and "/world/tail" in f.picture.entities:
         orbit_colors(f, text)
@@ -316,6 +332,40 @@ def steady(f, text):
             else:
                 continue
             assert np.abs(values / number - 1).max() < 0.06, part
+
+
+def rows_told(f, text):
+    """What of the picture is no data: gaps and how long they are, few rows in a revolution, a stowed sail."""
+    told = re.search(r"\*\*no data\*\* (once|(\d+) times), ([\d.e+]+) (day|hour)s in all", text)
+    assert (told is not None) == bool(len(f.truth.gaps)), "gaps are not told"
+    if told:
+        assert int(told.group(2) or 1) == len(f.truth.gaps)
+        size = {"day": DAY, "hour": 3600.0}[told.group(4)]
+        assert abs(float(told.group(3)) * size / np.sum(np.diff(f.truth.gaps)) - 1) < 6e-3
+    assert ("**stowed**" in text) == (f.truth.stowed.any() and f.truth.kind in ("solar-sail", "electric-sail"))
+    a = f.truth.elements["semi_major_axis_m"]
+    rate = np.where(a > 0, np.sqrt(f.truth.mu / np.abs(a) ** 3), 0.0) / (2 * np.pi)
+    turned = np.delete(0.5 * (rate[1:] + rate[:-1]) * np.diff(f.truth.time), f.truth.breaks).sum()
+    rows = len(f.truth) - 1
+    few = re.search(
+        r"\*\*(?:([\d.]+) rows in a revolution|rows are ([\d.e+]+) (revolutions apart|in a revolution))\*\*", text
+    )
+    assert (few is not None) == (turned > rows / 12), f"{rows / max(turned, 1e-9):.3g} rows in a revolution"
+    if few:
+        number = float(few.group(1) or few.group(2))
+        assert abs(number / (turned / rows if few.group(3) == "revolutions apart" else rows / turned) - 1) < 0.06
+    assert ("follows gravity" in text) == ("/world/trail/recent" in f.picture.entities and bool(far_rows(f)))
+    assert ", bent by the thrust," not in text or np.any(f.truth.thrust)
+
+
+def far_rows(f) -> list[int]:
+    """Rows k that lie more than a twelfth of a revolution before row k + 1, with data between."""
+    r2 = np.sum(f.truth.position**2, axis=1)
+    rate = np.linalg.norm(np.cross(f.truth.position, f.truth.velocity), axis=1) / r2
+    a = f.truth.elements["semi_major_axis_m"]
+    rate = np.maximum(rate, np.where(a > 0, np.sqrt(f.truth.mu / np.abs(a) ** 3), 0.0)) / (2 * np.pi)
+    far = np.flatnonzero(np.maximum(rate[1:], rate[:-1]) * np.diff(f.truth.time) > 1 / 12)
+    return [k for k in far.tolist() if k not in f.truth.breaks]
 
 
 def ensemble_colors(f, name):

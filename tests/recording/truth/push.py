@@ -46,16 +46,24 @@ def wall(f, entity, step):
 
 def standing(f, entity, part):
     """The wall stands on the trail from row to row; its height goes with the push or its root, it leans as the thrust
-    does or, where that lies along the trail, on the orbit's normal, and its colour is the strength of the push."""
+    does or, where that lies along the trail, on the orbit's normal, and its colour is the strength of the push. Between
+    rows far apart it follows the trail; over a gap there is none."""
     truth = f.truth
     done, feet, tops, colors = 0, [], [], []
     for step, foot, top, dark, bright in walls(f, entity):
         last = len(truth) - 1 if step is None else step
+        at_row = (
+            np.array([np.linalg.norm(truth.place / truth.length - p, axis=1).min() for p in foot]) < 1e-6 * truth.reach
+        )
+        if not at_row.all():
+            between_feet(f, foot, top, at_row)
+        foot, top, dark, bright = foot[at_row], top[at_row], dark[at_row], bright[at_row]
         rows = [int(np.argmin(np.linalg.norm(truth.place[done : last + 1] / truth.length - p, axis=1))) for p in foot]
         rows = np.array(rows) + done
         same_place(foot, truth.place[rows], truth.length)
         assert np.all(np.diff(rows) > 0)
-        assert step is None or rows[0] == done
+        assert step is None or rows[0] == done or (done in truth.breaks and rows[0] == done + 1)
+        assert not any(rows[0] <= row < rows[-1] for row in truth.breaks), "a wall over a gap"
         assert step is None or rows[-1] == step
         assert np.abs(dark - FOOT * bright).max() < 1.5
         feet.append(rows)
@@ -75,6 +83,24 @@ def standing(f, entity, part):
     told = np.full(len(rows), 0.72) if steady else share
     ramp = np.stack([np.interp(told, np.linspace(0, 1, 4), RAMP[:, k]) for k in range(3)], 1)
     assert np.abs(color - ramp).max() < 1.5
+
+
+def between_feet(f, foot, top, at_row):
+    """Points between rows: on the trail, as high as between the rows beside them."""
+    trail = np.concatenate([line for step in f.truth.steps for line in own_lines(f, "/world/trail/past", step)])
+    for k in np.flatnonzero(~at_row):
+        assert np.linalg.norm(trail - foot[k], axis=1).min() < 1e-6 * f.truth.reach, "a wall beside the trail"
+        a, b = np.flatnonzero(at_row[:k])[-1], k + np.flatnonzero(at_row[k:])[0]
+        low, high = np.sort(np.linalg.norm((top - foot)[[a, b]], axis=1))
+        bent = (
+            np.linalg.norm(unit((top - foot)[a]) + unit((top - foot)[b])) / 2
+        )  # of two that lean apart the mean is shorter
+        assert (0.9 * bent - 0.05) * low <= np.linalg.norm(top[k] - foot[k]) <= 1.001 * high
+
+
+def own_lines(f, entity, step):
+    """The lines that are logged at a step itself."""
+    return f.picture.line(entity, step) if step in f.picture.rows(entity, "LineStrips3D:strips")[0] else []
 
 
 def leaning(f, rows, height):
@@ -122,6 +148,7 @@ def ghost(f, entity, name):
 
 def body_or_normal(f, turns, rows):
     """The true axes where they are drawn; about its normal a wheel or a square may be turned as it likes."""
+    assert not f.truth.stowed[rows].any(), "a still copy of a sail that was stowed"
     normal = f.truth.carried(f.truth.normal)[rows]
     x = turns[..., 0] - np.sum(turns[..., 0] * normal, 1, keepdims=True) * normal
     x = unit(x)

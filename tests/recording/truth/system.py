@@ -79,22 +79,26 @@ def height_line(f, entity):
 
 
 def trail(f, entity):
-    """Pieces that join on: each ends where the craft is in its row, passes every drawn row, and follows the orbit in
-    between."""
+    """Pieces that join on: each ends where the craft is in its row, passes every drawn row, follows the orbit in
+    between, and ends where there is no data."""
     steps, _ = f.picture.rows(entity, "LineStrips3D:strips")
-    done, length = 0, f.truth.length
+    done, length, place = 0, f.truth.length, f.truth.place / f.truth.length
     for step in steps:
         lines = f.picture.line(entity, step)
         whole = np.concatenate(lines)
-        same_place(whole[0], f.truth.place[done], length) if len(lines) == 1 else None
+        same_place(lines[0][0], f.truth.place[done + (done in f.truth.breaks and done > 0)], length)
         same_place(whole[-1], f.truth.place[step], length)
         for row in range(done, step + 1):
-            near = np.linalg.norm(whole - f.truth.place[row] / length, axis=1).min()
-            gap = f.truth.time[row] - f.truth.time[max(row - 1, 0)] > f.truth.period / 6
-            assert near < (1e-2 if gap else 1e-6) * f.truth.reach, f"row {row} is not on the trail"
-        between = np.concatenate(lines)
-        if step > done:
-            between_rows(f, between, done, step)
+            near = np.linalg.norm(whole - place[row], axis=1).min()
+            drawn_before = row == done and row in f.truth.breaks
+            assert drawn_before or near < 1e-6 * f.truth.reach, f"row {row} is not on the trail"
+        for line in lines:
+            first, last = (
+                done + int(np.argmin(np.linalg.norm(place[done : step + 1] - end, axis=1))) for end in line[[0, -1]]
+            )
+            assert not any(first <= row < last for row in f.truth.breaks), "the trail leads over a gap"
+            if last > first:
+                between_rows(f, np.concatenate([line, 0.5 * (line[1:] + line[:-1])]), first, last)
         done = step
     assert done == f.truth.steps[-1], "the trail ends before the run"
     word = hue(f.picture.color(entity, "LineStrips3D:colors")[0])

@@ -133,15 +133,15 @@ def of_craft(top: str) -> list[Claim]:
     shape, tether = f"{top}/body/shape", f"{top}/body/tether"
     rows = (
         Claim(shape, MOVE, "nothing: a size", BODY, "told in the view's name", craft.scale_only),
-        Claim(f"{shape}/film_lit", MESH, "/attitude normal, the Sun", BODY, "1", craft.film),
-        Claim(f"{shape}/film_dark", MESH, "/attitude normal, the Sun", BODY, "1", craft.film),
-        Claim(f"{shape}/booms", MESH, "/attitude normal", BODY, "1", craft.booms),
-        Claim(f"{shape}/vanes", MESH, "/attitude normal", BODY, "1", craft.vanes),
-        Claim(f"{shape}/seams", LINE, "/attitude normal", BODY, "1", craft.seams),
-        Claim(f"{shape}/tethers", LINE, "/attitude normal", BODY, "1", craft.tethers),
-        Claim(f"{shape}/rim", LINE, "/attitude normal", BODY, "1", craft.rim),
-        Claim(f"{shape}/tips", f"{MESH} InstancePoses3D", "/attitude normal", BODY, "1", craft.at_tips),
-        Claim(f"{shape}/disc", MESH, "/attitude normal", BODY, "1", craft.disc),
+        Claim(f"{shape}/film_lit", f"{MESH} {MOVE}", "/attitude normal, the Sun", BODY, "1", craft.film),
+        Claim(f"{shape}/film_dark", f"{MESH} {MOVE}", "/attitude normal, the Sun", BODY, "1", craft.film),
+        Claim(f"{shape}/booms", f"{MESH} {MOVE}", "/attitude normal", BODY, "1", craft.booms),
+        Claim(f"{shape}/vanes", f"{MESH} {MOVE}", "/attitude normal", BODY, "1", craft.vanes),
+        Claim(f"{shape}/seams", f"{LINE} {MOVE}", "/attitude normal", BODY, "1", craft.seams),
+        Claim(f"{shape}/tethers", f"{LINE} {MOVE}", "/attitude normal", BODY, "1", craft.tethers),
+        Claim(f"{shape}/rim", f"{LINE} {MOVE}", "/attitude normal", BODY, "1", craft.rim),
+        Claim(f"{shape}/tips", f"{MESH} {MOVE} InstancePoses3D", "/attitude normal", BODY, "1", craft.at_tips),
+        Claim(f"{shape}/disc", f"{MESH} {MOVE}", "/attitude normal", BODY, "1", craft.disc),
         Claim(f"{shape}/hub", MESH, "/attitude normal", BODY, "1", craft.hub),
         Claim(f"{shape}/sheath", f"{SPLAT} {MOVE}", "/thrust on", BODY, "1", craft.sheath),
         Claim(f"{shape}/bus", MESH, "/attitude normal", BODY, "1", bus),
@@ -222,7 +222,7 @@ CURVES = (
     Claim("/plots/*/#/*", SWUNG, "as of its plot", "-", "title's unit", of_plot),
     *(
         Claim(f"/{lane}", "StateChange StateConfiguration", "/thrust on, /environment", "-", "in words", plots.lane)
-        for lane in ("push", "light", "force_law_valid", "warm")
+        for lane in ("push", "light", "force_law_valid", "warm", "stowed")
     ),
     Claim("/now", "TextDocument", "every column", "-", "in words", now.line),
     Claim("/log", "TextLog", "/events", "-", "in words", plots.log),

@@ -149,8 +149,14 @@ def test_every_row_that_is_drawn_stands_at_its_own_time(flights, name):
     flight = flights(name)
     rows = {step: (step, *times) for step, *times in flight.picture.clocks["/state"]}
     for entity, clocks in flight.picture.clocks.items():
+        if entity.startswith("/plots/"):  # just within a gap a curve is broken
+            clocks = {clock for clock in clocks if clock[0] not in flight.truth.breaks or clock == rows[clock[0]]}
         if entity not in ("/events", "/log") and not re.search(r"/\d+/(band|mean)$", entity):
             assert all(clock == rows[clock[0]] for clock in clocks), entity
+    for entity, components in flight.picture.between.items():
+        for rows_between in components.values():
+            for (start, end), (ns, _) in zip(flight.truth.gaps, sorted(rows_between), strict=True):
+                assert start < ns * 1e-9 < end, entity
     ns = np.array([rows[step][1] for step in flight.truth.steps])
     assert np.array_equal(ns, np.round(flight.truth.time * 1e9).astype(np.int64))
 

@@ -168,7 +168,10 @@ def test_every_fault_is_named_at_once_with_what_was_wanted():
         (lambda a: {"position": a["position"] / 1e3}, "position looks like kilometres, wanted m"),
         (lambda a: {"velocity": a["velocity"] / 1e3}, "velocity looks like kilometres a second, wanted m/s"),
         (lambda a: {"position": a["position"] * (np.arange(50) != 4)[:, None]}, "row 4 is the centre of the Sun"),
-        (lambda a: {"normal": a["position"] * (np.arange(50) != 4)[:, None]}, "normal: row 4 is the zero vector"),
+        (
+            lambda a: {"normal": a["position"] * (np.arange(50) != 4)[:, None], "device": "thruster"},
+            "normal: row 4 is the zero vector",
+        ),
         (lambda a: {"body": "Earth"}, "Earth does not go with mu"),
         (lambda a: {"radius": -1.0}, "radius"),
         (lambda a: {"mass": [1.0, 2.0]}, r"mass: shape \(2,\)"),
@@ -380,3 +383,84 @@ def test_round_the_earth_an_epoch_turns_the_globe_once_a_sidereal_day(tmp_path):
 def test_the_devices_of_arrays_are_those_of_scenes_and_those_that_are_drawn():
     assert set(LABELS) == set(CRAFT)
     assert {word: record.label for kind, record in DEVICES.items() for word in words_of_kind(kind)} == LABELS
+
+
+def test_rows_without_data_are_left_out_and_leave_a_gap():
+    time, position, velocity = ellipse()
+    lost = slice(10, 14)
+    holes = [array.copy() for array in (position, velocity)]
+    for array in holes:
+        array[lost] = np.nan
+    normal = position / AU
+    normal[lost] = np.nan
+    run = trajectory(time, *holes, normal=normal, mass=np.linspace(5, 4, ROWS), environment={"warm": time > time[20]})
+    assert len(run) == ROWS - 4
+    assert run.setting.gaps == ((time[9], time[14]),)
+    assert np.array_equal(run.position, np.delete(position, np.r_[lost], axis=0))
+    assert run.mass[10] == np.linspace(5, 4, ROWS)[14]
+    assert run.environment["warm"].sum() == ROWS - 21
+    holes[0][30, 1] = np.nan
+    with pytest.raises(TrajectoryError, match="position: row 30 is not a number"):
+        trajectory(time, *holes)
+
+
+def test_gaps_are_given_as_times_or_dates_and_those_that_overlap_are_one():
+    time, position, velocity = ellipse()
+    pairs = [(time[30], time[31]), (time[4] + 1, time[5]), (time[4], time[5] - 1)]
+    assert trajectory(time, position, velocity, gaps=pairs).setting.gaps == ((time[4], time[5]), (time[30], time[31]))
+    (gap,) = trajectory(
+        time, position, velocity, epoch="2031-01-01", gaps=[("2031-01-01T00:10", "2031-01-01T05:00")]
+    ).setting.gaps
+    assert gap == (600.0, 18_000.0)
+
+
+@pytest.mark.parametrize(
+    ("pair", "words"),
+    [
+        (5, "is no pair of times"),
+        ((1.0,), "is no pair of times"),
+        (("2031-01-02", "2031-01-03"), "is no pair of times"),
+        ((2e6, 1e6), "does not end after its start"),
+        ((-5.0, 1e5), "is not within the run"),
+        ((1e3, 2e6), "in it"),
+    ],
+)
+def test_a_gap_that_is_none_is_refused_in_a_sentence(pair, words):
+    with pytest.raises(TrajectoryError) as caught:
+        trajectory(*ellipse(), gaps=[pair])
+    (fault,) = caught.value.faults
+    assert fault.startswith("gaps: number 0")
+    assert words in fault
+
+
+def test_an_event_within_a_gap_needs_a_state_of_its_own():
+    time, position, velocity = ellipse()
+    when = float(time[10] + time[11]) / 2
+    with pytest.raises(TrajectoryError, match="lies where there is no data"):
+        trajectory(time, position, velocity, gaps=[(time[10], time[11])], events=[("x", when)])
+    known = Event("x", when, np.append(np.append(position[10], velocity[10]), 1.0))
+    assert trajectory(time, position, velocity, gaps=[(time[10], time[11])], events=[known]).events == (known,)
+
+
+def test_a_zero_normal_is_a_stowed_sail_without_angles_or_thrust():
+    time, position, velocity = ellipse()
+    normal, thrust = position / AU, 1e-4 * position / AU
+    normal[5:9] = thrust[5:9] = 0.0
+    run = trajectory(time, position, velocity, normal=normal, thrust=thrust)
+    stowed = np.isin(np.arange(ROWS), range(5, 9))
+    assert np.array_equal(run.environment["stowed"], stowed)
+    assert np.array_equal(np.isnan(run.attitude.pitch), stowed)
+    assert np.array_equal(run.attitude.normal.any(axis=1), ~stowed)
+    assert np.allclose(np.linalg.norm(run.attitude.quaternion, axis=1), 1)
+    assert "stowed" not in trajectory(time, position, velocity, normal=position).environment
+    thrust[6] = [1e-5, 0, 0]
+    with pytest.raises(TrajectoryError, match="row 6 has a push, but a sail without a normal there is stowed"):
+        trajectory(time, position, velocity, normal=normal, thrust=thrust)
+    with pytest.raises(TrajectoryError, match="normal: row 5 is the zero vector"):
+        trajectory(time, position, velocity, normal=normal, device="thruster")
+
+
+def test_a_gap_has_an_identity():
+    time, position, velocity = ellipse()
+    one, two = (trajectory(time, position, velocity, gaps=gaps) for gaps in ((), [(time[3], time[4])]))
+    assert one.setting.identity != two.setting.identity

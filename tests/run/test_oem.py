@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import random
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -234,3 +235,23 @@ def test_a_pipe_or_a_folder_is_no_message(tmp_path):
     for path in (tmp_path / "a.oem", tmp_path):
         with pytest.raises(RecordingError, match="not a regular file"):
             read_oem(path)
+
+
+def test_a_gap_and_a_jump_are_segments_of_their_own_and_come_back(tmp_path):
+    rows = np.r_[0:10, 209:219]
+    time = rows * 60.0
+    angle = 0.001 * time
+    place = 7e6 * np.column_stack([np.cos(angle), np.sin(angle), 0 * angle])
+    speed = 7e3 * np.column_stack([-np.sin(angle), np.cos(angle), 0 * angle])
+    time, place, speed = (np.insert(part, 15, part[15], axis=0) for part in (time, place, speed))
+    speed[15] *= 1.01
+    start = np.datetime64("2031-03-01T00:00:00", "ns")
+    written = Ephemeris("X", "Y", "EARTH", "EME2000", "UTC", start, time, place, speed, ((9, 12_000.0 - 60.0),))
+    path = write_oem(tmp_path / "a.oem", written)
+    assert path.read_text().count("META_START") == 3
+    found = read_oem(path)
+    assert np.array_equal(found.time, time)
+    assert found.without_data == ((time[9], time[10]),)
+    assert "velocity jumps" in found.notes[0]
+    with pytest.raises(RecordingError, match="nanosecond apart"):
+        write_oem(tmp_path / "b.oem", replace(written, position=place + 1e5 * (np.arange(21) == 15)[:, None]))

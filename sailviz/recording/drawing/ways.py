@@ -18,7 +18,7 @@ from sailviz.run.arrays import Run
 
 COARSE = 2 / SMOOTH  # revolutions
 MEETS = 0.5  # of the distance: what a cubic may still add to Kepler's motion
-SCAN = 65  # even times at which the swept angle is looked up
+SCAN, LOOKS = 65, 3  # times at which the swept angle is looked up, and how often for an orbit that turns sharply
 BENT = 1e-4  # of the distance: what is added is the thrust's
 MOST = 4 * SMOOTH  # points between two rows
 
@@ -87,10 +87,14 @@ def fly(run: Run, row: int, times: np.ndarray, mu: float) -> np.ndarray:
 def even_shares(run: Run, row: int, step: float, swept: float, mu: float) -> np.ndarray:
     """Shares of the time (p,), 0 to 1, at which the angle swept from the centre is nearly even."""
     s = np.linspace(0, 1, SCAN)
-    out = fly(run, row, s * step, mu)
-    out /= np.linalg.norm(out, axis=1, keepdims=True)
-    angle = np.arctan2(np.linalg.norm(np.cross(out[1:], out[:-1]), axis=1), np.sum(out[1:] * out[:-1], axis=1))
-    along = np.concatenate([[0.0], np.cumsum(angle)]) + 1e-3 * s  # a fall straight down sweeps nothing
+    for _ in range(LOOKS):
+        out = fly(run, row, s * step, mu)
+        out /= np.linalg.norm(out, axis=1, keepdims=True)
+        angle = np.arctan2(np.linalg.norm(np.cross(out[1:], out[:-1]), axis=1), np.sum(out[1:] * out[:-1], axis=1))
+        along = np.concatenate([[0.0], np.cumsum(angle)]) + 1e-3 * s  # a fall straight down sweeps nothing
+        if angle.max() < COARSE * 2 * np.pi:
+            break
+        s = np.interp(np.linspace(0, along[-1], SCAN), along, s)  # closer where it turns fast
     count = int(np.clip(np.ceil(SMOOTH * along[-1] / (2 * np.pi)), 4, MOST)) + 1
     return np.asarray(np.interp(np.linspace(0, along[-1], count), along, s))
 

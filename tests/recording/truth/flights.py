@@ -184,6 +184,25 @@ def own_sparse():
     return trajectory(time, position, velocity, gaps=[(time[12], time[13])], title="Five rows a turn")
 
 
+def own_steps():
+    """A sail with eight rows in a revolution, pushed hard: the way between rows is bent, the wall follows it."""
+    from scipy.integrate import solve_ivp
+
+    def push(y):
+        out = y[:3] / np.linalg.norm(y[:3])
+        ahead = np.cross(np.cross(y[:3], y[3:]), out)
+        return 1e-4 * (AU / np.linalg.norm(y[:3])) ** 2 * (0.8 * out + 0.6 * ahead / np.linalg.norm(ahead))
+
+    def fall(_, y):
+        return np.concatenate([y[3:], push(y) - MU_SUN * y[:3] / np.linalg.norm(y[:3]) ** 3])
+
+    time = np.linspace(0, 900 * DAY, 21)
+    start = [AU, 0, 0, 0, 29e3, 3e3]
+    y = solve_ivp(fall, (0, time[-1]), start, "DOP853", time, rtol=1e-12, atol=1e-3).y.T
+    thrust = np.array([push(row) for row in y])
+    return trajectory(time, y[:, :3], y[:, 3:], normal=thrust, thrust=thrust, gaps=[(time[15], time[16])])
+
+
 def own_low_gap():
     """Round the Earth, two revolutions without data."""
     time = np.concatenate([np.arange(10) * 300.0, 14_700 + np.arange(10) * 300.0])
@@ -228,6 +247,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run]] = {
     "own gaps": own_gaps,
     "own wheel": own_wheel,
     "own sparse": own_sparse,
+    "own steps": own_steps,
     "own low gap": own_low_gap,
 }
 SLOWED = ("decay", "drag", "own point")

@@ -65,6 +65,13 @@ def body_axes(normal: ArrayLike, hint: np.ndarray) -> np.ndarray:
     return np.stack([x, np.cross(z, x), z], axis=-1)
 
 
+def stance(axes: ArrayLike, normal: ArrayLike) -> np.ndarray:
+    """How a craft stands: its normal (n, 3) or, of a stowed sail, whose normal is zero, the first column of axes
+    (n, 3, 3): away from the central body."""
+    normal = np.asarray(normal, dtype=float)
+    return np.where(np.any(normal, axis=-1, keepdims=True), normal, np.asarray(axes)[..., 0])
+
+
 def quaternion(axes: ArrayLike) -> np.ndarray:
     """Unit quaternions (x, y, z, w) of rotation matrices, w >= 0. (..., 3, 3) -> (..., 4).
 

@@ -2,7 +2,7 @@
 
 /state        time_s, position_m (3), velocity_m_s (3), mass_kg
 /attitude     pitch_rad, cone_rad, clock_rad, normal (3), quaternion (xyzw, body to inertial); of a stowed sail the
-              normal is 0 and the angles NaN
+              normal is 0, pitch and clock are NaN
 /thrust       acceleration_m_s2 (inertial, 3), acceleration_rtn_m_s2 (3), magnitude_m_s2, on (bool)
 /elements     semi_major_axis_m, eccentricity, inclination_rad, raan_rad, argument_rad, true_anomaly_rad
 /environment  whatever acted, the unit in each name, (n,) or (n, 3); absent where nothing did

@@ -139,7 +139,7 @@ class Setting:
 class Attitude:
     """pitch, cone, clock (n,) rad; normal (n, 3) inertial unit vector: the sail normal away from the Sun, the thrust
     direction of a thruster, or from tip to satellite along a tether; quaternion (n, 4) xyzw, body to inertial, body
-    z = normal. A stowed sail has the normal 0, angles NaN and z away from the central body."""
+    z = normal. A stowed sail has the normal 0, pitch and clock NaN, and z away from the central body."""
 
     pitch: np.ndarray
     cone: np.ndarray

@@ -9,3 +9,4 @@ LABELS = {
     "thruster": "Thruster",
     "none": "Spacecraft",
 }
+SAILS = ("solar-sail", "electric-sail")  # what can be stowed

@@ -21,7 +21,7 @@ from sailviz.constants import MU_SUN
 from sailviz.elements import elements
 from sailviz.run.array_checks import ArrayChecks, TrajectoryError
 from sailviz.run.arrays import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust
-from sailviz.run.devices import LABELS
+from sailviz.run.devices import LABELS, SAILS
 from sailviz.version import __version__
 
 if TYPE_CHECKING:
@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from sailviz.run.array_checks import Curves, Epoch, Events, Missing
 
 __all__ = ["TrajectoryError", "trajectory"]
-
-SAILS = ("solar-sail", "electric-sail")  # what can be stowed
 
 
 def trajectory(
@@ -231,13 +229,12 @@ def _derived(given: _Given, setting: Setting, bodies: dict[str, np.ndarray]) -> 
     normal = frames.unit(normal)
     stowed: np.ndarray = ~np.any(normal, axis=1)
     pitch, cone, clock = frames.pitch_cone_clock(axes, normal, thrust)
-    stance = np.where(stowed[:, None], axes[..., 0], normal)  # a bus without a sail has to stand somehow
     attitude = Attitude(
         np.where(stowed, np.nan, pitch),
-        np.where(stowed, np.nan, cone),
+        cone,
         np.where(stowed, np.nan, clock),
         normal,
-        frames.quaternion(frames.body_axes(stance, axes[..., 1])),
+        frames.quaternion(frames.body_axes(frames.stance(axes, normal), axes[..., 1])),
     )
     return Run(
         setting,

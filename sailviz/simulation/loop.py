@@ -17,6 +17,7 @@ from sailviz.propagate import dynamics, stepping
 from sailviz.propagate.patience import Patience
 from sailviz.propulsion.devices import CALLED, THRUSTER
 from sailviz.run.arrays import Attitude, EnsembleStatistics, Event, Run, Setting, Thrust, join
+from sailviz.run.devices import SAILS
 from sailviz.scene.loading import SceneSource, load_scene
 from sailviz.scene.sections import Propagation
 from sailviz.simulation.environment_columns import observe, voltages
@@ -266,7 +267,9 @@ def _observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, f
     position, velocity = states[:3].T.copy(), states[3:6].T.copy()
     axes = frames.rtn(position, velocity)
     pitch, cone, clock = frames.pitch_cone_clock(axes, normal, acceleration)
-    attitude = Attitude(pitch, cone, clock, normal, frames.quaternion(frames.body_axes(normal, axes[..., 1])))
+    turn = frames.quaternion(frames.body_axes(frames.stance(axes, normal), axes[..., 1]))
+    stowed = ~np.any(normal, axis=1) if setting.craft.kind in SAILS else np.zeros(len(normal), bool)
+    attitude = Attitude(np.where(stowed, np.nan, pitch), cone, np.where(stowed, np.nan, clock), normal, turn)
     on = (factor * throttle != 0) & (p.model.device != dynamics.NO_DEVICE)
     thrust = Thrust(acceleration, frames.to_frame(axes, acceleration), np.linalg.norm(acceleration, axis=1), on)
     environment = {}

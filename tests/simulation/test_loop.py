@@ -256,6 +256,7 @@ def test_a_users_zero_vector_is_a_stowed_sail(device):
     assert not run.thrust.acceleration[off].any()
     assert run.thrust.acceleration[run.time < 299 * DAY].any(axis=1).all()
     assert not run.attitude.normal[off].any()
+    assert np.isnan(run.attitude.pitch[off]).all() == (run.setting.craft.kind in ("solar-sail", "electric-sail"))
     assert np.linalg.norm(run.attitude.quaternion, axis=1) == pytest.approx(1, abs=1e-12)
     assert run.mass[off] == pytest.approx(np.full(off.sum(), run.mass[-1]), rel=1e-15, nan_ok=True)
     energy = np.sum(run.velocity**2, axis=1) / 2 - MU_SUN / np.linalg.norm(run.position, axis=1)

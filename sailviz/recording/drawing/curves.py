@@ -227,7 +227,7 @@ class Curves:
             low, high = swing.low[filled, k], swing.high[filled, k]
             color, path = list(plot.colors[k]), f"{plot.path}/{place}"
             if plot.swings == "mean":
-                self._write_lines(f"{path}/mean", index, means[place][:, None], [name], [color])
+                self._write_lines(f"{path}/mean", rows, means[place][:, None], [name], [color])
                 continue
             band = rr.Measurements.from_fields(
                 colors=[style.dim(color, BAND_SHADE)], widths=[0.0], names=[f"{name}, least to largest"]

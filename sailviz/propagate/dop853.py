@@ -17,6 +17,7 @@ from sailviz.compiled import compiled, inlined
 from sailviz.propagate import dop853_coefficients as c
 from sailviz.propagate.dynamics import SIZE, derivative
 from sailviz.propagate.events import Watch
+from sailviz.propagate.patience import first_piece
 from sailviz.propagate.stepping import (
     CLOCK,
     DENSE,
@@ -282,7 +283,7 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
 @compiled
 def advance_compiled(
     work, count, sign, event, parameters, breaks, factors,
-    kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step, pause,
+    kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step, piece,
 ):  # fmt: skip
     """`advance` with its tuples taken apart: at the border of compiled code whole tuples would cost 6 us more."""
     s = Integration(work, count, sign, event)
@@ -302,6 +303,7 @@ def advance_compiled(
         clock[STEP] = min(3.0 * tolerance**0.125 * dynamical, largest_step)
     edged = p.callbacks.edges != 0 and tolerance < WORTH_A_STEP
     row, ended = open_block(count)
+    pause = count[STEPS] + count[REJECTED] + (piece if piece > 0 else first_piece(p))
     t, interval = clock[TIME], count[INTERVAL]
     factor = factors[interval] * count[IN_USE]
     while True:

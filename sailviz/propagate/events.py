@@ -10,6 +10,7 @@ from sailviz.compiled import inlined
 from sailviz.constants import J2_EARTH, RADIUS_EARTH
 
 RADIUS, APSIS, ENERGY, NODE, AXIS, MEAN_AXIS = range(6)
+NOISE = 1e-9  # of distance, energy or r v: 7 mm in a low orbit, 150 m at 1 au; what rounding and the first steps err by
 OBLATENESS_EARTH = J2_EARTH * RADIUS_EARTH**2  # m2
 RECORD, STOP, END_OF_USE = range(3)
 
@@ -59,3 +60,20 @@ def measure(kind, level, y, mu):
     swing = near * near * near * (1.0 - 3.0 * s * s)
     swing -= (1.0 - 1.5 * (1.0 - hz * hz / h2)) * (mu * a / h2) ** 1.5
     return a - OBLATENESS_EARTH / a * swing - level
+
+
+@inlined
+def sign_at(kind, level, y, mu):
+    """`measure` where a run begins: 0 where what is left of it is rounding, so that an event that holds there already
+    does not happen before it has ceased to hold."""
+    g = measure(kind, level, y, mu)
+    x, yy, z, vx, vy, vz = y[0], y[1], y[2], y[3], y[4], y[5]
+    r = np.sqrt(x * x + yy * yy + z * z)
+    scale = r
+    if kind == APSIS:
+        scale = r * np.sqrt(vx * vx + vy * vy + vz * vz)
+    elif kind == ENERGY:
+        scale = mu / r
+    elif kind in (AXIS, MEAN_AXIS):
+        scale = abs(level)
+    return 0.0 if abs(g) <= NOISE * scale else g

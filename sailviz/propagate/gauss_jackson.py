@@ -51,6 +51,7 @@ from sailviz.propagate.gauss_jackson_steps import (
     quintic,
     step_rule,
 )
+from sailviz.propagate.patience import first_piece
 from sailviz.propagate.stepping import (
     CLOCK,
     DENSE,
@@ -126,7 +127,7 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
 @compiled
 def advance_compiled(
     work, count, sign, event, history, grid, parameters, breaks, factors,
-    kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step, pause,
+    kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step, piece,
 ):  # fmt: skip
     """`advance` with its tuples taken apart."""
     s = Integration(work, count, sign, event)
@@ -146,6 +147,7 @@ def advance_compiled(
         derivative(clock[TIME], y, factors[count[INTERVAL]], p, k[0])
         clock[STEP] = step_rule(y, k[0], mu, grid[REFINEMENT], largest_step)[1]
     row, ended = open_block(count)
+    pause = count[STEPS] + count[REJECTED] + (piece if piece > 0 else first_piece(p))
     t, interval = clock[TIME], count[INTERVAL]
     factor = factors[interval] * count[IN_USE]
     while True:

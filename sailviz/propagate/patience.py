@@ -11,6 +11,8 @@ from __future__ import annotations
 
 from time import perf_counter
 
+from sailviz.compiled import inlined
+
 MOST_STEPS = 200_000_000  # of one flight, some minutes of work; a year in a low orbit takes half a million
 PIECE = 0.1  # s of wall time that a piece should take
 FIRST = 4096  # steps of the first piece: at most 0.15 s with the dearest of the forces that are built in
@@ -19,6 +21,12 @@ MOST_OF_A_PIECE = 1_000_000
 WINDOW = 200_000  # steps over which progress is measured: a close passage of a body takes some hundreds
 
 GOES_ON, NO_PROGRESS, TOO_MANY, TIME_IS_UP = 0, 7, 8, 9  # the last three are a status of `advance`
+
+
+@inlined
+def first_piece(p):
+    """Steps of the first piece. p : a record of PARAMETERS."""
+    return FIRST_OF_OWN if p.callbacks.user_steering != 0 or p.callbacks.user_force != 0 else FIRST
 
 
 class Patience:
@@ -31,7 +39,7 @@ class Patience:
         self.most_steps, self.until = most_steps, until
         self.step = 0.0  # s of flight that a step took on average, where there is no progress
         self.left = 0.0  # steps that the rest of the flight would have taken
-        self._piece = 0  # steps
+        self._piece = 0  # steps; 0 before the first
         self._begun = 0.0
         self._mark: tuple[int, float] | None = None  # steps and time of flight at the beginning of the window
 
@@ -43,17 +51,15 @@ class Patience:
         """Let the next piece have this number of steps."""
         self._piece = steps
 
-    def begin_piece(self, tried: int, own: bool) -> int:
-        """The number of tried steps after which to come back. own : whether a user's function is called."""
-        if not self._piece:
-            self._piece = FIRST_OF_OWN if own else FIRST
+    def begin_piece(self) -> int:
+        """Steps to try before coming back; 0 for the first piece, whose length compiled code knows: `first_piece`."""
         self._begun = perf_counter()
-        return tried + self._piece
+        return self._piece
 
     def end_piece(self, tried: int, time: float, end: float) -> int:
         """After a piece that came back: whether to go on. time s of flight reached, end s of it wanted."""
         taken = perf_counter() - self._begun
-        wanted = self._piece * min(PIECE / max(taken, 1e-6), 8.0)
+        wanted = max(self._piece, 1) * min(PIECE / max(taken, 1e-6), 8.0)
         self._piece = int(min(max(wanted, 1), MOST_OF_A_PIECE))
         if self._begun + taken > self.until:
             return TIME_IS_UP

@@ -13,7 +13,7 @@ import numpy as np
 from sailviz.compiled import compiled, inlined
 from sailviz.propagate.callbacks import call
 from sailviz.propagate.dynamics import SIZE
-from sailviz.propagate.events import APSIS, END_OF_USE, RADIUS, STOP, measure
+from sailviz.propagate.events import APSIS, END_OF_USE, RADIUS, STOP, measure, sign_at
 from sailviz.propagate.patience import GOES_ON, Patience
 from sailviz.propagate.patience import NO_PROGRESS as NO_PROGRESS
 from sailviz.propagate.patience import TIME_IS_UP as TIME_IS_UP
@@ -85,19 +85,20 @@ def statistics(s) -> tuple[int, int]:
 def in_pieces(compiled_advance, s, model, arguments, t_end, patience: Patience | None) -> int:
     """Let compiled code integrate, piece after piece, until it is done or patience ends. Returns a status.
 
-    compiled_advance : takes s, the parameters, the arguments and the number of tried steps after which it pauses.
+    compiled_advance : takes s, the parameters, the arguments and the number of steps to try before it pauses.
     """
-    patience = Patience() if patience is None else patience
-    own = bool(model.parameters["callbacks"]["user_steering"][0] or model.parameters["callbacks"]["user_force"][0])
+    status = compiled_advance(*s, model.parameters, *arguments, 0 if patience is None else patience.begin_piece())
+    if status != PAUSED:
+        return int(status)
     count = s.counter
+    patience = Patience() if patience is None else patience
     while True:
-        pause = patience.begin_piece(int(count[STEPS] + count[REJECTED]), own)
-        status = compiled_advance(*s, model.parameters, *arguments, pause)
-        if status != PAUSED:
-            return int(status)
         status = patience.end_piece(int(count[STEPS] + count[REJECTED]), time(s), t_end)
         if status != GOES_ON:
             return status
+        status = compiled_advance(*s, model.parameters, *arguments, patience.begin_piece())
+        if status != PAUSED:
+            return int(status)
 
 
 @inlined
@@ -178,7 +179,8 @@ def find_events(s, watch, t0, h, x_end, samples, mu, w):
         for e in range(len(watch.kind)):
             kind, level = watch.kind[e], watch.level[e]
             evaluate(dense, high, w)
-            g_low, g = s.sign[e], measure(kind, level, w, mu)
+            g_low = s.sign[e]
+            g = sign_at(kind, level, w, mu) if g_low == 0.0 else measure(kind, level, w, mu)
             s.sign[e] = g
             if watch.action[e] == END_OF_USE and s.counter[IN_USE] == 0:
                 continue
@@ -257,7 +259,7 @@ def begin(s, watch, breaks, factors, p):
         count[INTERVAL] += 1
     factor_from(t, y, factors, count[INTERVAL], p)
     for e in range(len(watch.kind)):
-        s.sign[e] = measure(watch.kind[e], watch.level[e], y, p.gravity.mu)
+        s.sign[e] = sign_at(watch.kind[e], watch.level[e], y, p.gravity.mu)
 
 
 @inlined

@@ -118,8 +118,8 @@ class Setting:
     thesis: str  # section of the thesis, "" where none applies
     body: Body
     craft: Craft
-    duration: float  # s, as asked for
-    rows: int  # rows the whole run will have if nothing stops it
+    duration: float  # s, as asked for, or until what ended the run where its rows are spread over that
+    rows: int  # rows the whole run will have if nothing stops it before
     epoch: np.datetime64 | None  # UTC label of t = 0, ns
     references: tuple[Reference, ...]
     parameters: tuple[tuple[str, str], ...]  # words and values for the description panel, e.g. ("pitch", "35.26 deg")

@@ -41,7 +41,7 @@ from sailviz.simulation.thrust_history import (
 )
 
 if TYPE_CHECKING:
-    from sailviz.simulation.loop import OutputTimes
+    from sailviz.simulation.output_times import OutputTimes
     from sailviz.uncertainty.ensembles import Ensemble as Flown
     from sailviz.uncertainty.ensembles import GivenWind, RandomWind
     from sailviz.uncertainty.ensembles import ReplayedWind as ReplayedSeries

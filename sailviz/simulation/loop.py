@@ -14,20 +14,20 @@ from sailviz import frames
 from sailviz.constants import DAY
 from sailviz.errors import PropagationError, TimeLimitError
 from sailviz.propagate import dynamics, stepping
+from sailviz.propagate.events import STOP
 from sailviz.propagate.patience import Patience
 from sailviz.propulsion.devices import CALLED, THRUSTER
 from sailviz.run.arrays import Attitude, EnsembleStatistics, Event, Run, Setting, Thrust, join
 from sailviz.run.devices import SAILS
 from sailviz.scene.loading import SceneSource, load_scene
-from sailviz.scene.sections import Propagation
 from sailviz.simulation.environment_columns import observe, voltages
 from sailviz.simulation.integration import INTEGRATORS, begun
 from sailviz.simulation.metadata import bodies, planets_in_view, setting_of
 from sailviz.simulation.no_progress import too_many, too_short, too_slow
+from sailviz.simulation.output_times import OutputTimes
 from sailviz.simulation.plan import Plan, plan
 
 BLOCK_ROWS = 16_384  # a recording takes this many at once
-DEFAULT_OUTPUTS = 1000
 
 
 def simulate(
@@ -71,37 +71,6 @@ def simulate_blocks(
     return _blocks(planned, block_rows, progress or (lambda fraction: None), drawn, patience, time_limit or np.inf)
 
 
-def _grid(run: Propagation) -> tuple[int, float]:
-    """(rows, spacing s) of even output; the last row is the end of the run, or one spacing before it."""
-    if run.output_interval is not None:
-        return int(np.floor(run.duration / run.output_interval * (1 + 1e-12))) + 1, run.output_interval
-    rows = run.outputs or DEFAULT_OUTPUTS
-    return rows, run.duration / (rows - 1)
-
-
-class OutputTimes:
-    """Times of all rows of a run, s: even, or closer in some windows. Even ones are computed as they are asked for."""
-
-    def __init__(self, run: Propagation) -> None:
-        self.rows, self.spacing = _grid(run)
-        self.run = run
-        self.uneven: np.ndarray | None = None
-        if run.dense:
-            even = self.between(0, self.rows)
-            windows = [np.arange(w.start, w.end + 0.5 * w.output_interval, w.output_interval) for w in run.dense]
-            self.uneven = np.unique(np.minimum(np.concatenate([even, *windows]), run.duration))
-            self.rows = len(self.uneven)
-
-    def between(self, first: int, count: int) -> np.ndarray:
-        """The times of count rows from a first one on."""
-        if self.uneven is not None:
-            return self.uneven[first : first + count]
-        times = np.minimum(self.spacing * np.arange(first, first + count), self.run.duration)
-        if first + count == self.rows and self.run.output_interval is None:
-            times[-1] = self.run.duration
-        return times
-
-
 FAILURES: dict[int, Callable[[Plan, Any, Patience], str]] = {
     stepping.UNDERFLOW: lambda p, state, patience: too_short(p, state),
     stepping.NOT_FINITE: lambda p, state, patience: "The acceleration is not a finite number",
@@ -115,6 +84,11 @@ def _blocks(
 ) -> Iterator[Run]:
     output = OutputTimes(p.scene.propagation)
     ensembles = _ensembles(p, output) if drawn or any(item.ensemble for item in p.scene.expect) else ()
+    spreads = _spreads(p)
+    if spreads and output.rows > block_rows:  # a flight without rows tells where it ends: they can be streamed then
+        state = begun(p)
+        _fill(p, state, np.linspace(0.0, output.end, 51)[1:], [], 50, lambda share: progress(0.5 * share), patience)
+        output, progress = _spread(p, state, output, progress, 0.5)
     state = begun(p)
     setting: Setting | None = None
     planets: dict[str, np.ndarray] = {}
@@ -125,6 +99,10 @@ def _blocks(
         due = [switch for switch in switches if switch[0] <= times[-1]]
         del switches[: len(due)]
         filled = _fill(p, state, times, due, output.rows, progress, patience)
+        if spreads and output.rows <= block_rows and _ending(p, state, filled.status):
+            output, progress = _spread(p, state, output, progress, stepping.time(state) / output.end)
+            times, state = output.between(0, output.rows), begun(p)
+            filled = _fill(p, state, times, due, output.rows, progress, patience)
         if not stepping.in_use(state):
             off_time = min([off_time] + [event.time for event in filled.events if event.name == "brake off"])
         ended = _ending(p, state, filled.status)
@@ -133,7 +111,7 @@ def _blocks(
         if len(filled.times):
             if setting is None:
                 planets = planets_in_view(p) if drawn else {}
-                setting = setting_of(p, planets, output.rows, ensembles, drawn)
+                setting = replace(setting_of(p, planets, output.rows, ensembles, drawn), duration=output.end)
             block = _observed(p, setting, filled.times, filled.states, first, off_time)
             yield replace(
                 block,
@@ -153,6 +131,26 @@ def _blocks(
         if filled.status != stepping.DONE:
             break
     progress(1.0)
+
+
+def _spreads(p: Plan) -> bool:
+    """Whether rows are spread over what is flown: they are a number, and something may end the run early. Ensembles,
+    which are flown for as long as planned, keep to the rows that were planned."""
+    ends = bool(np.any(p.watch.action == STOP)) or float(p.model.parameters["surface"]["radius"][0]) > 0.0
+    scene = p.scene
+    return ends and scene.propagation.output_interval is None and not (scene.ensemble or scene.chaos)
+
+
+def _spread(
+    p: Plan, state: Any, output: OutputTimes, progress: Callable[[float], None], done: float
+) -> tuple[OutputTimes, Callable[[float], None]]:
+    """Rows over what a first flight has flown, and the progress of the second, whose share is what is not done."""
+    planned, end = output.end, stepping.time(state)
+    ended = bool(_ending(p, state, int(state.counter[stepping.STATUS]))) and 0.0 < end < planned
+    end = end if ended else planned
+    return OutputTimes(p.scene.propagation, end), lambda share: progress(
+        done + (1.0 - done) * min(share * planned / end, 1.0)
+    )
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,6 @@ from contextlib import contextmanager
 from types import FrameType
 
 from sailviz.cli.shared import RUN_FAILED, UNFORESEEN, tell
-from sailviz.version import __version__
 
 SIGNALS = ("SIGTERM", "SIGHUP")  # what ends a service and what a closed terminal sends; Windows knows the first only
 
@@ -60,6 +59,8 @@ def printable() -> None:
 
 def unforeseen(error: Exception) -> int:
     """Say that sailviz is at fault, and where to report it -> exit code."""
+    from sailviz.version import __version__  # it reads the package's metadata, which takes a while
+
     if isinstance(error, MemoryError):
         tell("There is not enough memory for this.")
         return RUN_FAILED

@@ -131,7 +131,8 @@ class Watch:
             path.unlink(missing_ok=True)
             raise
         if not self._quiet:
-            tell_flight(scene.title, recorder.time, rows, ended, judge.verdicts())
+            remarks = recorder.recorded.remarks if recorder.recorded else ()
+            tell_flight(scene.title, recorder.time, rows, ended, judge.verdicts(), remarks)
         return path
 
     def _look(self, files: Iterable[Path]) -> None:

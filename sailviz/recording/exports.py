@@ -78,9 +78,7 @@ def written_whole(path: Path, write: Callable[[Path], None]) -> Path:
 
 def _write_tables(data: Evidence, path: Path, to: str, wanted: Sequence[str]) -> tuple[Path, ...]:
     entities = [name for name in wanted or data.entities if name != "/events"]
-    events = events_table(data) if data.events and (not wanted or "/events" in wanted) else None
-    if "/events" in wanted and events is None:
-        raise RecordingError(f"{data.label} holds no events")
+    events = _wanted_events(data, wanted)
     meta = {b"sailviz": json.dumps(data.facts, sort_keys=True).encode()}
     if not entities and events is not None:
         return (written_whole(path, lambda part: _write_arrow(part, events.replace_schema_metadata(meta), to)),)
@@ -96,6 +94,15 @@ def _write_tables(data: Evidence, path: Path, to: str, wanted: Sequence[str]) ->
         beside = path.with_name(f"{path.stem}.events{path.suffix}")
         written.append(written_whole(beside, lambda part: _write_arrow(part, events, to)))
     return tuple(written)
+
+
+def _wanted_events(data: Evidence, wanted: Sequence[str]) -> pa.Table | None:
+    """The events, unless others are wanted or there are none. RecordingError where they were asked for in vain."""
+    if data.events and (not wanted or "/events" in wanted):
+        return events_table(data)
+    if "/events" in wanted:
+        raise RecordingError(f"{data.label} holds no events")
+    return None
 
 
 def _write_arrow(path: Path, table: pa.Table, to: str) -> None:

@@ -172,12 +172,7 @@ def _checked(
     normals = None if normal is None else check.vectors("normal", normal, rows)
     pushes = np.zeros((rows or 0, 3)) if thrust is None else check.vectors("thrust", thrust, rows)
     masses, centre = check.mass(mass, rows), check.body(*body)
-    kind = (
-        device
-        if device is not None
-        else ("solar-sail" if normal is not None else "thruster" if thrust is not None else "none")
-    )
-    kind = check.device(kind)
+    kind = check.device(_suggested(normal, thrust) if device is None else device)
     columns, curves = check.environment({} if environment is None else environment, rows), check.references(references)
     if check.good:
         check.order(times, places)
@@ -187,16 +182,18 @@ def _checked(
     without = check.gaps(gaps, times, moment) if check.good else ()
     marks = check.events(events, times, places, velocities, masses, without) if check.good else ()
     if check.good and normals is not None:
-        if kind in SAILS:
-            check.stowed(normals, pushes)
-        else:
-            check.no_zeros("normal", normals)
+        check.stowed(normals, pushes) if kind in SAILS else check.no_zeros("normal", normals)
     check.finish()
     marks = _with_jumps(marks, times, places, velocities, masses)
     note = "" if pushes.any() else strange  # thrust explains what gravity does not
     return _Given(
         times, places, velocities, normals, pushes, masses, centre, moment, kind, columns, curves, marks, without, note
     )  # fmt: skip
+
+
+def _suggested(normal: ArrayLike | None, thrust: ArrayLike | None) -> str:
+    """The device that the arrays which were given suggest."""
+    return "solar-sail" if normal is not None else "thruster" if thrust is not None else "none"
 
 
 def _rows(values: Any, kept: np.ndarray, count: int) -> Any:

@@ -103,8 +103,7 @@ def _blocks(
             output, progress = _spread(p, state, output, progress, stepping.time(state) / output.end)
             times, state = output.between(0, output.rows), begun(p)
             filled = _fill(p, state, times, due, output.rows, progress, patience)
-        if not stepping.in_use(state):
-            off_time = min([off_time] + [event.time for event in filled.events if event.name == "brake off"])
+        off_time = _first_end(off_time, state, filled.events)
         ended = _ending(p, state, filled.status)
         if ended:
             filled = _with_last_state(filled, state)
@@ -120,17 +119,28 @@ def _blocks(
                 events=tuple(_with_known_mass(p, filled.events)),
                 ended=ended,
             )
-        if filled.status == stepping.TIME_IS_UP:
-            reached, wanted = stepping.time(state) / DAY, p.scene.propagation.duration / DAY
-            raise TimeLimitError(
-                f"the time limit of {time_limit:g} s is over: the flight had reached {reached:.4g} of {wanted:.4g} d"
-            )
-        if filled.status in FAILURES:
-            now = stepping.time(state), stepping.state(state)
-            raise PropagationError(FAILURES[filled.status](p, state, patience), *now)
+        _raise_failure(p, state, filled.status, patience, time_limit)
         if filled.status != stepping.DONE:
             break
     progress(1.0)
+
+
+def _raise_failure(p: Plan, state: Any, status: int, patience: Patience, time_limit: float) -> None:
+    """TimeLimitError where the time allowed is over, PropagationError where the flight cannot go on."""
+    if status == stepping.TIME_IS_UP:
+        reached, wanted = stepping.time(state) / DAY, p.scene.propagation.duration / DAY
+        raise TimeLimitError(
+            f"the time limit of {time_limit:g} s is over: the flight had reached {reached:.4g} of {wanted:.4g} d"
+        )
+    if status in FAILURES:
+        raise PropagationError(FAILURES[status](p, state, patience), stepping.time(state), stepping.state(state))
+
+
+def _first_end(off_time: float, state: Any, events: list[Event]) -> float:
+    """Time, s, from which the device is off for good: what it was, or that of its last use in these events."""
+    if stepping.in_use(state):
+        return off_time
+    return min([off_time] + [event.time for event in events if event.name == "brake off"])
 
 
 def _spreads(p: Plan) -> bool:

@@ -181,12 +181,7 @@ def series(
             f"the longest gap lasts {longest / 3600:g} h, up to {longest_gap / 3600:g} h are filled; "
             f"{int(np.sum(~measured))} of {len(measured)} pressures are missing"
         )
-    others = 0
-    for name in ("speed", "density"):
-        if name in full:
-            if not np.isfinite(full[name]).any():
-                raise ValueError(f"the {name} is missing throughout")
-            others += int(np.sum(~np.isfinite(full[name])))
+    others = _missing(full)
     full = {name: _filled(x) for name, x in full.items()}
     start = None
     if dated:
@@ -195,6 +190,17 @@ def series(
         int(np.sum(~measured)), len(gaps), longest, others, refused, reordered, int(again.sum()), int(trimmed)
     )
     return Series(start, step, full["pressure"], measured, full.get("speed"), full.get("density"), repairs)
+
+
+def _missing(full) -> int:
+    """How many speeds and densities are missing. ValueError where all of one are."""
+    count = 0
+    for name in ("speed", "density"):
+        if name in full:
+            if not np.isfinite(full[name]).any():
+                raise ValueError(f"the {name} is missing throughout")
+            count += int(np.sum(~np.isfinite(full[name])))
+    return count
 
 
 def _without_impossible(columns, repair):

@@ -119,10 +119,9 @@ class Comparer:
         if len(self.a.gaps) != len(self.b.gaps) or not np.allclose(self.a.gaps, self.b.gaps, rtol=RELATIVE):
             told = [gap_words(side.gaps) for side in (self.a, self.b)]
             self.faults.append(f"without data: {told[0]} in A, {told[1]} in B")
-        if one.get("identity") != two.get("identity") and "identity" in one and "identity" in two:
-            self.notes.append(f"made from different scenes: {one['identity']} and {two['identity']}")
-        if one.get("versions") != two.get("versions") and "versions" in one and "versions" in two:
-            self.notes.append(f"made by different versions: {one['versions']} and {two['versions']}")
+        for name, said in (("identity", "made from different scenes"), ("versions", "made by different versions")):
+            if name in one and name in two and one[name] != two[name]:
+                self.notes.append(f"{said}: {one[name]} and {two[name]}")
         self._note_thinned(one.get("rows"), two.get("rows"))
 
     def _compare_epochs(self) -> None:

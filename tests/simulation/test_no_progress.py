@@ -91,7 +91,7 @@ def test_time_limit_ends_a_flight_with_what_there_is(seconds):
     rows, caught = rows_until(TimeLimitError, load_scene(PATIENT), time_limit=seconds)
     assert perf_counter() - began < 5
     assert f"the time limit of {seconds:g} s is over: the flight had reached" in str(caught)
-    assert rows == 1  # of the start
+    assert 1 <= rows < 100  # of the thousand, the start's at least
 
 
 def test_time_limit_that_is_long_enough_changes_nothing():

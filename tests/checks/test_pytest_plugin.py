@@ -125,7 +125,9 @@ def test_a_broken_baseline_is_refused_in_one_sentence(project, pytester):
     (pytester.path / "baselines" / "test_flight.npz").write_bytes(b"PK\x03\x04")
     result = project()
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["*RecordingError: *test_flight.npz is not a table of numpy arrays, or was cut off*"])
+    result.stdout.fnmatch_lines(
+        ["*RecordingError: *test_flight.npz is not a table of numpy arrays, or is damaged or cut off*"]
+    )
 
 
 def test_pictures_of_both_are_left_where_there_is_vulkan(project, pytester):

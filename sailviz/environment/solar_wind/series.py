@@ -166,9 +166,8 @@ def series(
     again = _repeated(seconds[order], sorted_columns["pressure"], repair)
     if np.sum(~again) < FEWEST_VALUES:
         raise ValueError(f"the series has {np.sum(~again)} different times; {FEWEST_VALUES} are needed")
-    step, full = _on_even_steps(
-        seconds[order][~again], {name: x[~again] for name, x in sorted_columns.items()}, most_rows
-    )
+    kept = {name: x[~again] for name, x in sorted_columns.items()}
+    step, full = _on_even_steps(seconds[order][~again], kept, most_rows)
 
     measured = np.isfinite(full["pressure"])
     first, end = np.flatnonzero(measured)[[0, -1]] + (0, 1)
@@ -183,24 +182,20 @@ def series(
         )
     others = _missing(full)
     full = {name: _filled(x) for name, x in full.items()}
-    start = None
-    if dated:
-        start = time[order[0]].astype("datetime64[ms]") + np.timedelta64(round(1e3 * first * step), "ms")
-    repairs = Repairs(
-        int(np.sum(~measured)), len(gaps), longest, others, refused, reordered, int(again.sum()), int(trimmed)
-    )
+    first_kept = np.timedelta64(round(1e3 * first * step), "ms")
+    start = time[order[0]].astype("datetime64[ms]") + first_kept if dated else None
+    filled = int(np.sum(~measured))
+    repairs = Repairs(filled, len(gaps), longest, others, refused, reordered, int(again.sum()), int(trimmed))
     return Series(start, step, full["pressure"], measured, full.get("speed"), full.get("density"), repairs)
 
 
 def _missing(full) -> int:
     """How many speeds and densities are missing. ValueError where all of one are."""
-    count = 0
-    for name in ("speed", "density"):
-        if name in full:
-            if not np.isfinite(full[name]).any():
-                raise ValueError(f"the {name} is missing throughout")
-            count += int(np.sum(~np.isfinite(full[name])))
-    return count
+    others = {name: full[name] for name in ("speed", "density") if name in full}
+    for name, values in others.items():
+        if not np.isfinite(values).any():
+            raise ValueError(f"the {name} is missing throughout")
+    return sum(int(np.sum(~np.isfinite(values))) for values in others.values())
 
 
 def _without_impossible(columns, repair):

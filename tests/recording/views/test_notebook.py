@@ -52,7 +52,7 @@ def test_a_run_sums_itself_up(run):
     assert words[words.index("distance from the Sun") + 2].startswith("4.33333 au")
     assert "escape" in words[words.index("event") :]
     assert repr(run).startswith(
-        "<Run Tsien's problem: escape by radial thrust: 31 rows over 1.88304 yr, ended by escape"
+        "<Run Tsien's problem: escape by radial thrust: 40 rows over 1.88304 yr, ended by escape"
     )
     assert len(repr(run)) < 200
 

@@ -78,7 +78,8 @@ class Drawing:
         layout, notes, aside = self._draw(story, last)
         steady = self._curves.steady()
         self.remarks = [plain_words(line) for line in (*gap_words(self._setting), *sparse_words(story))]
-        notes = [*notes, *gap_words(self._setting), *sparse_words(story), *stowed_words(story)]
+        sparse = [] if story.frame.low and story.frame.sparse else sparse_words(story)  # there the orbit's line says it
+        notes = [*notes, *gap_words(self._setting), *sparse, *stowed_words(story)]
         text = about(self._setting, notes, steady, aside)
         self._picture.log_static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
         log_now(self._picture, story)

@@ -63,7 +63,8 @@ def orbit_words(story: Story) -> list[str]:
     high, low = story.altitude[0] / 1e3, story.altitude.min() / 1e3
     words = f"orbit: **blue** at {high:.0f} km to **pink** at {low:.0f} km"
     if story.frame.slowed > 1.5:
-        words += f"; of {story.frame.turns:,.0f} turns {story.frame.turns / story.frame.slowed:.0f} are shown"
+        turns = story.frame.turns * story.duration / story.frame.duration
+        words += f"; of {turns:,.0f} turns {turns / story.frame.slowed:.0f} are shown"
     return [words, *shell_words(story.samples.run)]
 
 

@@ -23,7 +23,8 @@ def sparse_words(story: Story) -> list[str]:
     few = turned > SPARSE * rows
     if few and story.frame.sparse:
         apart = f"{turned / rows:.2g} revolutions apart" if turned > rows else f"{rows / turned:.1f} in a revolution"
-        return [f"**rows are {apart}**: the picture goes round {TURNS:.0f} times instead of {turned:,.0f}"]
+        shown = TURNS * story.duration / story.frame.duration  # the pace is that of the planned time
+        return [f"**rows are {apart}**: the picture goes round {shown:.0f} times instead of {turned:,.0f}"]
     ways = story.ways
     begin = f"**{rows / turned:.1f} rows in a revolution**" if few else f"**rows far apart** {times(ways.far)}"
     if story.frame.low or not (ways.far or ways.open):

@@ -16,7 +16,7 @@ from typing import Any
 
 import click
 
-from sailviz.errors import PropagationError, RecordingError, SceneError, TimeLimitError
+from sailviz.errors import PropagationError, RecordingError, SailvizError, SceneError, TimeLimitError
 
 EXPECTATION_FAILED, BAD_INPUT, RUN_FAILED, UNFORESEEN, INTERRUPTED, UNREAD = 1, 2, 3, 4, 130, 141
 LONGEST_WORD, LONGEST_LINE = 300, 2000  # letters of a message; what is longer was given by accident
@@ -123,8 +123,10 @@ class Failures:
             self._tell(name, error, BAD_INPUT)
         except TimeLimitError as error:
             self._tell(name, error, BAD_INPUT)
-        except (PropagationError, RecordingError) as error:
-            self._tell(name, error, RUN_FAILED if isinstance(error, PropagationError) else BAD_INPUT)
+        except RecordingError as error:
+            self._tell(name, error, BAD_INPUT)
+        except SailvizError as error:  # a flight, or an analytic solution beside it, that cannot go on
+            self._tell(name, error, RUN_FAILED)
 
     def _tell(self, name: str, error: Exception, code: int) -> None:
         self.worst(code)

@@ -32,6 +32,7 @@ from sailviz.design.asymptotic.legs import (
     march_adaptive,
 )
 from sailviz.design.displaced.force_shape import force_shape
+from sailviz.errors import SailvizError
 from sailviz.propulsion.solar_sail import Film
 
 DOUBTFUL = 0.03  # relative error in r from which a result says that it should not be trusted
@@ -40,7 +41,7 @@ SCHEMES = {"plain": PLAIN, "midpoint": MIDPOINT}
 CLOCKS = {"quadrature": QUADRATURE, "closed": CLOSED, None: NONE}
 
 
-class BreakdownError(ValueError):
+class BreakdownError(SailvizError, ValueError):
     """The first-order solution has no orbit somewhere on the arc. theta : rad, where it ends."""
 
     def __init__(self, reason, theta):

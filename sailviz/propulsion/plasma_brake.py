@@ -57,7 +57,8 @@ def force_per_length(
     voltage : V, absolute value. wire_radius : m, effective electric radius of the multi-wire tether.
     polarity : "negative" (plasma brake) or "positive" (the E-sail's law, the ion ram energy in place of V_w, (3.41)).
     Valid for voltage far above the ram energy (4.7 V for oxygen in low orbit) and a sheath much wider than the tether;
-    NaN where ln(sheath / wire_radius) is not above 1. The sheath width uses |V0|, not |V0| - V_i: 0.02 % of the force.
+    NaN where ln(sheath / wire_radius) is not above 1; no force where there is no plasma. The sheath width uses |V0|,
+    not |V0| - V_i: 0.02 % of the force.
     """
     density, ion_mass, speed, voltage = np.broadcast_arrays(
         *(np.asarray(x, dtype=float) for x in (density, ion_mass, speed, voltage))
@@ -68,16 +69,19 @@ def force_per_length(
         return 0.18 * np.maximum(0.0, voltage - ram_energy) * np.sqrt(VACUUM_PERMITTIVITY * ram_pressure)
     if polarity != "negative":
         raise ValueError(f'polarity is "negative" or "positive", not {polarity!r}')
-    sheath = np.sqrt(VACUUM_PERMITTIVITY * voltage / (ELEMENTARY_CHARGE * density))
+    plasma = np.where(density > 0.0, density, np.nan)
+    sheath = np.sqrt(VACUUM_PERMITTIVITY * voltage / (ELEMENTARY_CHARGE * plasma))
     log = np.log(sheath / wire_radius)
     v_t = voltage / np.where(log > 1, log, np.nan)
-    width = np.sqrt(VACUUM_PERMITTIVITY * v_t / (ELEMENTARY_CHARGE * density))
-    return 3.864 * ram_pressure * width * np.exp(-ram_energy / v_t)
+    width = np.sqrt(VACUUM_PERMITTIVITY * v_t / (ELEMENTARY_CHARGE * plasma))
+    return np.where(density == 0.0, 0.0, 3.864 * ram_pressure * width * np.exp(-ram_energy / v_t))
 
 
 @inlined
 def negative_force_per_length(density, ion_mass, speed, voltage, wire_radius):
     """`force_per_length` for scalars inside the propagator, negative polarity; NaN outside its range as there."""
+    if density <= 0.0:
+        return 0.0
     ram_pressure = ion_mass * density * speed * speed
     ram_energy = ion_mass * speed * speed / (2 * ELEMENTARY_CHARGE)
     sheath = np.sqrt(VACUUM_PERMITTIVITY * voltage / (ELEMENTARY_CHARGE * density))
@@ -102,20 +106,22 @@ def species_force_per_length(
     wire_radius: float = 1e-3,
 ) -> np.ndarray:
     """Drag per length of a negative tether in several ion species, N/m: each has its own ram pressure and ram energy,
-    all share one sheath.
+    all share one sheath. No force where there is no plasma.
 
     densities : (..., k) 1/m3, ion_masses : (k,) kg; the others as in `force_per_length`, of the shape (...). The mean
     ion mass instead differs by at most 2.1 % anywhere in IRI-2020 from 200 to 1500 km.
     """
     densities, ion_masses = np.asarray(densities, dtype=float), np.asarray(ion_masses, dtype=float)
     speed, voltage = (np.asarray(x, dtype=float) for x in (speed, voltage))
-    total = densities.sum(axis=-1)
+    empty = densities.sum(axis=-1) == 0.0
+    total = np.where(empty, np.nan, densities.sum(axis=-1))
     sheath = np.sqrt(VACUUM_PERMITTIVITY * voltage / (ELEMENTARY_CHARGE * total))
     log = np.log(sheath / wire_radius)
     v_t = voltage / np.where(log > 1, log, np.nan)
     ram_energy = ion_masses * speed[..., None] ** 2 / (2 * ELEMENTARY_CHARGE)
     each = densities * ion_masses * np.exp(-ram_energy / v_t[..., None])
-    return 3.864 * speed**2 * np.sqrt(VACUUM_PERMITTIVITY * v_t / (ELEMENTARY_CHARGE * total)) * each.sum(axis=-1)
+    width = np.sqrt(VACUUM_PERMITTIVITY * v_t / (ELEMENTARY_CHARGE * total))
+    return np.where(empty, 0.0, 3.864 * speed**2 * width * each.sum(axis=-1))
 
 
 def magnetic_factor(angle: npt.ArrayLike, reduction: float = 0.0) -> np.ndarray:

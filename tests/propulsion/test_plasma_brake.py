@@ -256,3 +256,12 @@ def test_validity_is_an_array_where_its_arguments_are():
     found = validity(3e10, np.array([12.64, 1.97]) * ATOMIC_MASS, 7500.0, 1000.0, altitude=[600e3, 1500e3])
     assert found.supersonic.tolist() == [True, False]
     assert found.all.tolist() == [True, False]
+
+
+def test_without_plasma_there_is_no_force():
+    assert force_per_length(0.0, 16 * ATOMIC_MASS, 7.5e3, 1e3) == 0
+    assert species_force_per_length([0.0, 0.0], [ATOMIC_MASS, 16 * ATOMIC_MASS], 7.5e3, 1e3) == 0
+    assert negative_force_per_length(0.0, 16 * ATOMIC_MASS, 7.5e3, 1e3, 1e-3) == 0
+    thinner = force_per_length(np.logspace(-20, 10, 31), 16 * ATOMIC_MASS, 7.5e3, 1e3)
+    assert np.all(np.diff(thinner) > 0)  # and it is where ever thinner plasma leads
+    assert thinner[0] < 1e-15

@@ -10,24 +10,7 @@ from sailviz.errors import SceneError
 from sailviz.scene.loading import load_scene
 from sailviz.shipped import shipped_scenes
 
-SMALL = {
-    "title": "small",
-    "start": {"kind": "circular", "radius_au": 1},
-    "device": {"kind": "none"},
-    "propagation": {"duration_d": 10},
-}
-
-
-def with_parts(**parts):
-    return {**SMALL, **parts}
-
-
-def faults(source, **more) -> dict[str, str]:
-    """Place -> sentence (with its hint) of everything that is wrong."""
-    with pytest.raises(SceneError) as caught:
-        load_scene(source, **more)
-    return {fault.where: f"{fault.what} {fault.hint}" for fault in caught.value.faults}
-
+from .small import faults, with_parts
 
 FAULTY = """\
 title = ""

@@ -13,17 +13,9 @@ from sailviz.scene.loading import schema
 from sailviz.shipped import shipped_scenes
 from sailviz.units import UNITS
 
+from .small import SMALL, with_parts
+
 RAW = {name: tomllib.loads(path.read_text(encoding="utf-8")) for name, path in shipped_scenes().items()}
-SMALL = {
-    "title": "small",
-    "start": {"kind": "circular", "radius_au": 1},
-    "device": {"kind": "none"},
-    "propagation": {"duration_d": 10},
-}
-
-
-def with_parts(**parts):
-    return {**SMALL, **parts}
 
 
 def plain(value):

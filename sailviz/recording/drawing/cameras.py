@@ -99,57 +99,52 @@ def fixed_eye(
     return best
 
 
-def sweep(
-    normals: np.ndarray,
-    thrusts: np.ndarray,
-    places: np.ndarray,
-    shares: np.ndarray,
-    weights: np.ndarray,
-    film: bool,
-    elevation: float,
-) -> Sweep:
-    """The slow sweep that sees a sail best: normals, thrusts, places (n, 3) unit vectors at shares (n,) of the time;
-    elevation in degrees. It turns by at most 200 degrees, unless a film would then be well seen for less than three
-    quarters of the time."""
-    going = best_sweep(normals, thrusts, places, shares, weights, film, elevation, SLOW)
-    if film and well_seen(going, normals, shares) < WANTED:
-        faster = best_sweep(normals, thrusts, places, shares, weights, film, elevation, FAST)
-        if well_seen(faster, normals, shares) > well_seen(going, normals, shares):
+@dataclass(frozen=True)
+class Moments:
+    """A sail at n moments: its normals, thrusts and places (n, 3), unit vectors, at shares (n,) of the time, and what
+    each moment counts, (n,)."""
+
+    normals: np.ndarray
+    thrusts: np.ndarray
+    places: np.ndarray
+    shares: np.ndarray
+    weights: np.ndarray
+
+
+def sweep(moments: Moments, film: bool, elevation: float) -> Sweep:
+    """The slow sweep that sees a sail best, at an elevation in degrees. It turns by at most 200 degrees, unless a film
+    would then be well seen for less than three quarters of the time."""
+    going = best_sweep(moments, film, elevation, SLOW)
+    if film and well_seen(going, moments) < WANTED:
+        faster = best_sweep(moments, film, elevation, FAST)
+        if well_seen(faster, moments) > well_seen(going, moments):
             return faster
     return going
 
 
-def best_sweep(
-    normals: np.ndarray,
-    thrusts: np.ndarray,
-    places: np.ndarray,
-    shares: np.ndarray,
-    weights: np.ndarray,
-    film: bool,
-    elevation: float,
-    most: int,
-) -> Sweep:
+def best_sweep(moments: Moments, film: bool, elevation: float, most: int) -> Sweep:
     """The best of all sweeps that turn by at most so many degrees."""
-    share = weights / weights.sum()
+    share = moments.weights / moments.weights.sum()
     start = np.radians(np.arange(0, 360, 10))[:, None, None]
     turn = np.radians(np.arange(-most, most + 1, 20))[None, :, None]
-    eyes = direction(start + turn * shares, np.radians(elevation))  # (starts, turns, n, 3)
-    gold = seen(-np.sum(eyes * normals, -1), film)
-    sine = np.sqrt(np.clip(1 - np.sum(eyes * thrusts, -1) ** 2, 0, 1))
-    near = np.sum(eyes * places, -1)
-    worth = gold + 0.5 * np.minimum(sine, 0.85) / 0.85 + (0.45 if film else 1.0) * near
+    eyes = direction(start + turn * moments.shares, np.radians(elevation))  # (starts, turns, n, 3)
+    lit = -np.sum(eyes * moments.normals, -1)
+    sine = np.sqrt(np.clip(1 - np.sum(eyes * moments.thrusts, -1) ** 2, 0, 1))
+    near = np.sum(eyes * moments.places, -1)
+    worth = seen(lit, film) + 0.5 * np.minimum(sine, 0.85) / 0.85 + (0.45 if film else 1.0) * near
     score = worth @ share - 0.12 * np.abs(turn[..., 0]) / np.pi
     if most > SLOW:  # what the faster one is for
-        score = score + 2.0 * np.minimum((-np.sum(eyes * normals, -1) > WELL) @ share, 0.85)
+        score = score + 2.0 * np.minimum((lit > WELL) @ share, 0.85)
     first, pace = np.unravel_index(np.argmax(score), score.shape)
     return Sweep(eyes[first, pace, 0], float(turn[0, pace, 0]))
 
 
-def well_seen(going: Sweep, normals: np.ndarray, shares: np.ndarray) -> float:
+def well_seen(going: Sweep, moments: Moments) -> float:
     """Share of the time in which a film's lit side is well seen."""
-    azimuth = np.arctan2(going.eye[1], going.eye[0]) + going.turn * shares
+    azimuth = np.arctan2(going.eye[1], going.eye[0]) + going.turn * moments.shares
     eyes = direction(azimuth, np.arcsin(np.clip(going.eye[2], -1, 1)))
-    return float((-np.sum(eyes * normals, -1) > WELL) @ (np.gradient(shares) / np.gradient(shares).sum()))
+    time = np.gradient(moments.shares)
+    return float((-np.sum(eyes * moments.normals, -1) > WELL) @ (time / time.sum()))
 
 
 def fit(

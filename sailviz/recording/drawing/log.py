@@ -105,12 +105,6 @@ class Picture:
         """vectors (n, 3): one arrow a row, from the origin of its parent's frame."""
         self.log_columns(path, index, rr.Arrows3D.columns(vectors=f4(vectors)))
 
-    def log_fixed_arrows(self, path: str, origins: ArrayLike, vector: ArrayLike, color: Color, width: float) -> None:
-        """Parallel arrows from origins (k, 3) that move with their parent's frame only. vector : (3,)."""
-        start = f4(origins)
-        vectors = f4(np.tile(np.asarray(vector, float), (len(start), 1)))
-        self.log_static(path, rr.Arrows3D(origins=start, vectors=vectors, colors=[list(color)], radii=points(width)))
-
     def log_strip_style(self, path: str, color: Color | None, width: float) -> None:
         """Colour, unless it has rows, and width, in ui points, of the lines of an entity."""
         more: dict[str, Any] = {} if color is None else {"colors": [list(color)]}

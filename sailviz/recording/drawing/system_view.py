@@ -193,9 +193,9 @@ def main_camera(story: Story, found: Landmarks, fence: Fence | None, size: float
         normals = np.tile([0.0, 0.0, 1.0], (len(moments), 1))
     turn = np.zeros(len(story.time))
     if story.turns <= SWEEP_TURNS and not story.ring and story.turns > 0.02:
-        going = cameras.sweep(
-            normals, thrusts, unit(story.position[moments]), story.share[moments], weights, film, FLAT[1]
-        )
+        places = unit(story.position[moments])
+        sails = cameras.Moments(normals, thrusts, places, story.share[moments], weights)
+        going = cameras.sweep(sails, film, FLAT[1])
         eye, turn = going.eye, going.turn * story.share
     else:
         near = (0.25 if film else 0.55) * unit(story.position[0])

@@ -35,7 +35,8 @@ def flight_round(turns, lean, count=200):
 @pytest.mark.parametrize("turns", [0.6, 0.9, 1.2])
 def test_a_slow_sweep_sees_the_gold_side_of_a_film_three_quarters_of_the_time(turns, lean):
     normals, places, shares = flight_round(turns, lean)
-    going = cameras.sweep(normals, normals, places, shares, np.ones(len(shares)), True, 38.0)
+    moments = cameras.Moments(normals, normals, places, shares, np.ones(len(shares)))
+    going = cameras.sweep(moments, True, 38.0)
     azimuth = np.arctan2(going.eye[1], going.eye[0]) + going.turn * shares
     eyes = cameras.direction(azimuth, np.radians(38.0))
     gold = -np.sum(eyes * normals, 1) > 0.3

@@ -317,7 +317,8 @@ def validity(
     density, ion_mass, speed, voltage, length, altitude, temperature = np.broadcast_arrays(
         *(np.asarray(x, dtype=float) for x in (density, ion_mass, speed, voltage, length, altitude, ion_temperature))
     )
-    sheath = np.sqrt(VACUUM_PERMITTIVITY * voltage / (ELEMENTARY_CHARGE * density))
+    with np.errstate(divide="ignore"):  # without plasma the sheath is as wide as can be
+        sheath = np.sqrt(VACUUM_PERMITTIVITY * voltage / (ELEMENTARY_CHARGE * density))
     flags = (
         voltage >= 20 * ion_mass * speed**2 / (2 * ELEMENTARY_CHARGE),
         np.log(sheath / wire_radius) > 1,

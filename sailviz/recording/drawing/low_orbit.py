@@ -39,6 +39,7 @@ BESIDE = 1.0004  # radii: the tail lies over the ring
 EYE, TARGET = np.array([0.105, -0.085, 0.315]), (-0.066, -0.010, 0.0)  # riding along, radii of the planet
 FAR = 2.2  # distances of the start from which the globe is seen
 SEASON_MISS = -0.02  # mean of the Sun's height over the orbit from which its other side is taken
+SINKS = 1.0  # km, a descent whose colours are worth a line
 CIRCLE = 241  # points of the ring
 DESCENT = "Descent (orbits in one plane, to scale)"
 
@@ -61,6 +62,8 @@ def log_low_orbit(picture: Picture, story: Story) -> tuple[list[Space], Space, d
 def orbit_words(story: Story) -> list[str]:
     """What the colour of the orbit means, how many turns are shown, and what the maps are."""
     high, low = story.altitude[0] / 1e3, story.altitude.min() / 1e3
+    if high - low < SINKS and story.frame.slowed <= 1.5:
+        return shell_words(story.samples.run)
     words = f"orbit: **blue** at {high:.0f} km to **pink** at {low:.0f} km"
     if story.frame.slowed > 1.5:
         turns = story.frame.turns * story.duration / story.frame.duration

@@ -14,7 +14,8 @@ from sailviz.run import gaps as spans
 from sailviz.run.arrays import EnsembleStatistics
 
 ROWS = 700
-OVAL = 0.08  # difference of the highest and the lowest altitude, of the mean one, from which both are told
+OVAL = 0.15  # typical difference of the highest and the lowest altitude, of the mean one, from which both are told
+NARROW = 1e-4  # au, a spread that is told in km
 BETWEEN = " · "
 
 
@@ -101,7 +102,7 @@ def altitude_words(story: Story) -> list[str]:
     e, radius = story.samples.run.elements, story.setting.body.radius
     low = e.semi_major_axis * (1 - e.eccentricity) - radius
     high = e.semi_major_axis * (1 + e.eccentricity) - radius
-    oval = (high - low > OVAL * story.altitude) & (low > GROUND)
+    oval = (np.median(high - low) > OVAL * np.median(story.altitude)) & (low > GROUND)
     return [
         f"{a / 1e3:.0f} to {b / 1e3:.0f} km up" if long else f"{mean / 1e3:.0f} km up"
         for a, b, long, mean in zip(low.tolist(), high.tolist(), oval.tolist(), story.altitude.tolist(), strict=True)
@@ -135,7 +136,9 @@ def ensemble_words(story: Story) -> list[str]:
     apart = widest.control == "none" and narrowest.control != "none"
 
     def said(values: np.ndarray, how: str) -> list[str]:
-        decimals = int(np.clip(1 - np.floor(np.log10(max(float(values.max()), 1e-6))), 2, 6))
+        if values.max() < NARROW:
+            return [f"±{value * story.frame.unit / 1e3:,.0f} km{how}" for value in values.tolist()]
+        decimals = int(np.clip(1 - np.floor(np.log10(float(values.max()))), 2, 6))
         return [f"±{value:.{decimals}f} au{how}" for value in values.tolist()]
 
     first = said(spread(widest), " without control" if apart else f", {widest.name}")

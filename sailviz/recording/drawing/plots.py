@@ -93,6 +93,7 @@ WORDS = {  # columns of the environment whose title is not their name
 }
 COLOR_OF = (  # part of a column's name -> the quantity whose colour it has
     ("plasma_force", "drag"),
+    ("sunlit", "sunlight"),
     ("air", "air"),
     ("plasma", "plasma"),
     ("ion", "plasma"),

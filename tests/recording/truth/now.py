@@ -148,12 +148,12 @@ def light(f, row, where):
     assert f.truth.lit[row] == (where == "sunlight")
 
 
-@part(r"spread ±([\d.]+) au(?: without control|, .*?)?(?:, ±([\d.]+) au(?: with|, .*)?)?")
-def spread(f, row, widest, narrowest):
+@part(r"spread ±([\d.,]+) (au|km)(?: without control|, .*?)?(?:, ±([\d.,]+) (au|km)(?: with|, .*)?)?")
+def spread(f, row, widest, unit, narrowest, other):
     sigmas = sorted((s[0] for s in f.spreads(f.truth.time[row])), reverse=True)
     order = sorted(f.spreads(f.truth.time[-1]), key=lambda s: -s[0])
     now = {name: s for s, name in f.spreads(f.truth.time[row])}
     assert sigmas
-    told(widest, now[order[0][1]])
+    told(widest, now[order[0][1]] * {"au": 1.0, "km": AU / 1e3}[unit])
     if narrowest is not None:
-        told(narrowest, now[order[-1][1]])
+        told(narrowest, now[order[-1][1]] * {"au": 1.0, "km": AU / 1e3}[other])

@@ -383,6 +383,9 @@ def ensemble_colors(f, name):
 def orbit_colors(f, text):
     """Altitudes that belong to colours, and how many turns are shown of how many."""
     high = heights(f) / 1e3
+    if high[0] - high.min() < 1.0 and f.truth.slower <= 1.5:
+        assert "**pink**" not in text
+        return
     blue, pink = re.search(r"\*\*blue\*\* at (\d+) km to \*\*pink\*\* at (-?\d+) km", text).groups()
     assert abs(float(blue) - high[0]) <= 0.51
     assert abs(float(pink) - high.min()) <= 0.51

@@ -102,9 +102,7 @@ def test_ctrl_c_outside_of_the_work_is_130_too(monkeypatch):
     def pressed(*_, **__):
         raise KeyboardInterrupt
 
-    for place in ("sailviz.scene.load_scene", "sailviz.shipped.shipped_scenes"):
-        monkeypatch.setattr(place, pressed)
-    monkeypatch.setattr("sailviz.cli.list.shipped_scenes", pressed, raising=False)
+    monkeypatch.setattr("sailviz.scene.load_scene", pressed)
     for words in (["list"], ["show", "displaced/circular"]):
         result = CliRunner().invoke(main, words, catch_exceptions=False)
         assert result.exit_code == 130

@@ -128,7 +128,7 @@ def log_fence(picture: Picture, story: Story, fence: Fence) -> None:
                 vertex_positions=f4(np.concatenate(corners)), vertex_colors=np.concatenate(colors)
             ).partition(counts),
             *rr.Mesh3D.columns(triangle_indices=np.concatenate(faces)).partition([len(part) for part in faces]),
-            *rr.Mesh3D.columns(albedo_factor=[style.rgba((255, 255, 255), ALPHA[part])] * len(pairs)),
+            *rr.Mesh3D.columns(albedo_factor=np.full(len(pairs), style.rgba((255, 255, 255), ALPHA[part]), np.uint32)),
         ]
         picture.log_columns(path, index, columns)
         picture.log_strip_style(f"{path}/edge", style.FENCE_EDGE[part], style.WIDTH[f"fence {part}"])

@@ -54,6 +54,21 @@ class Size(click.ParamType):
 )
 @click.option("--at", default="end", show_default=True, metavar="TIME", help="start, end, 0.6, or 120d, 0.5yr, 36h.")
 @click.option("--size", type=Size(), metavar="WxH", help="In pixels; 1600x900, a movie 1280x720.")
+@click.option(
+    "--scale",
+    type=Number(1, 4),
+    default=1.0,
+    show_default=True,
+    metavar="N",
+    help="N pixels for each of the size, in tenths: the same picture, sharper.",
+)
+@click.option(
+    "--style",
+    type=click.Choice(["dark", "paper"]),
+    default="dark",
+    show_default=True,
+    help="On black, or on white for print.",
+)
 @click.option("--dressed", is_flag=True, help="One view with title, line of the moment and progress, as movies have.")
 @click.option("--plain", is_flag=True, help="A movie of the whole window, or of one view, without these.")
 @click.option("--chrome", is_flag=True, help="With the viewer's menu and badges.")
@@ -77,6 +92,8 @@ def picture(
     view: str | None,
     at: str,
     size: tuple[int, int] | None,
+    scale: float,
+    style: str,
     dressed: bool,
     plain: bool,
     chrome: bool,
@@ -100,15 +117,17 @@ def picture(
     if len(sources) > 1 and (film is not None or (output and Path(output).suffix)):
         raise click.UsageError("one name, but there are several sources: give a folder.")
     with collecting_failures() as failures, failures.next():
-        _check_before(at, film, seconds, fps)
+        size = size or (MOVIE_SIZE if film else PICTURE_SIZE)
+        _check_before(at, film, seconds, fps, size, scale)
+        page = {"size": size, "scale": scale, "style": style}
         for source, out in zip(sources, _outputs(sources, output, film), strict=True):
             with failures.next(source), _recording_of(source, settings, quiet) as path:
                 report: PictureReport | MovieReport
                 if film:
-                    report = _film(path, out, source, view, size or MOVIE_SIZE, seconds, fps, not plain, quiet)
+                    report = _film(path, out, source, view, seconds, fps, not plain, quiet, page)
                 else:
                     looks = {"panels": not bare, "chrome": chrome, "dressed": dressed}
-                    report = _shoot(path, out, view, at, size or PICTURE_SIZE, looks)
+                    report = _shoot(path, out, view, at, page | looks)
                 for sentence in report.errors:
                     click.echo(f"{source}: {sentence}", err=True)
                     failures.worst(VIEW_FAILED)
@@ -116,14 +135,15 @@ def picture(
                     click.echo(_said(report))
 
 
-def _check_before(at: str, film: str | None, seconds: float, fps: float) -> None:
+def _check_before(at: str, film: str | None, seconds: float, fps: float, size: tuple[int, int], scale: float) -> None:
     """Everything that can be known to fail before a scene is simulated."""
     from sailviz.recording.views.instant import moment
     from sailviz.recording.views.movie import check_format, frames_of
-    from sailviz.recording.views.screenshot import check_vulkan
+    from sailviz.recording.views.screenshot import check_vulkan, tenths_above_one
 
     check_vulkan()
     moment(at)
+    tenths_above_one(scale, size)
     if film is not None:
         check_format(film)
         frames_of(seconds, fps)
@@ -143,9 +163,7 @@ def _outputs(sources: Sequence[str], output: str | None, film: str | None) -> li
     return files
 
 
-def _shoot(
-    path: Path, out: Path, view: str | None, at: str, size: tuple[int, int], looks: dict[str, bool]
-) -> PictureReport:
+def _shoot(path: Path, out: Path, view: str | None, at: str, looks: dict[str, Any]) -> PictureReport:
     from dataclasses import replace
 
     from sailviz.recording.views import screenshot
@@ -153,7 +171,7 @@ def _shoot(
 
     fraction = fraction_of(path, at)
     with files.writing(out, "picture") as part:
-        report = screenshot.picture(path, part, view=view, at=fraction, size=size, **looks)
+        report = screenshot.picture(path, part, view=view, at=fraction, **looks)
     return replace(report, path=out)
 
 
@@ -162,16 +180,16 @@ def _film(
     out: Path,
     source: str,
     view: str | None,
-    size: tuple[int, int],
     seconds: float,
     fps: float,
     dressed: bool,
     quiet: bool,
+    page: dict[str, Any],
 ) -> MovieReport:
     from sailviz.recording.views.movie import make_movie
 
     with progress_bar(f"Movie of {source}", quiet) as progress:
-        return make_movie(path, out, view=view, size=size, seconds=seconds, fps=fps, dressed=dressed, progress=progress)
+        return make_movie(path, out, view=view, seconds=seconds, fps=fps, dressed=dressed, progress=progress, **page)
 
 
 def _said(report: PictureReport | MovieReport) -> str:

@@ -139,6 +139,11 @@ class Recording(Mapping[str, Entity]):
         return str(self._reader.recordings()[0].application_id)
 
     @property
+    def recording_id(self) -> str:
+        """What a viewer knows it by: files of the same application and id are one recording."""
+        return str(self._reader.recordings()[0].recording_id)
+
+    @property
     def title(self) -> str:
         """The scene's title, "" where there is none."""
         return self._word("title")

@@ -52,11 +52,13 @@ def make_movie(
     size: tuple[int, int] = (1280, 720),
     panels: bool = False,
     dressed: bool = True,
+    scale: float = 1.0,
+    style: str = "dark",
     progress: Callable[[float], None] | None = None,
 ) -> MovieReport:
     """Make a movie of a recording; its format is the ending of `out`: .mp4, .webp or .gif.
 
-    view, panels, dressed : as in `picture`; start, end : moments of the run, as in `fraction_of`
+    view, panels, dressed, size, scale, style : as in `picture`; start, end : moments of the run, as in `fraction_of`
     seconds, fps : of the movie; progress : called with the fraction that is done
     Nothing is written unless all of it is. Raises RecordingError for what cannot be shown, encoded or written.
     """
@@ -71,7 +73,7 @@ def make_movie(
     warnings: dict[str, None] = {}
     frames: list[Path] = []
     with files.writing(out, "movie") as part, scratch() as folder:
-        with Studio(path, size=size, panels=panels) as studio:
+        with Studio(path, size=size, panels=panels, scale=scale, style=style) as studio:
             view = view or (studio.main if dressed else None)
             for number, at in enumerate(np.linspace(first, last, count)):
                 agree = AGREE if number else FIRST_AGREE

@@ -7,6 +7,7 @@ from __future__ import annotations
 import contextlib
 import copy
 import io
+import math
 import os
 import time
 from collections.abc import Callable
@@ -20,6 +21,7 @@ from sailviz.errors import RecordingError
 from sailviz.recording.children import Child
 from sailviz.recording.reader import FilePath, read
 from sailviz.recording.sinks import viewer_binary
+from sailviz.recording.views import paper
 from sailviz.recording.views.asking import A, ask, place_on
 from sailviz.recording.views.dressed import Words, dress, words_of
 from sailviz.recording.views.scratch import scratch
@@ -33,6 +35,9 @@ START, SETTLE = 60.0, 25.0  # s to wait for the viewer, and for a picture that n
 AGREE = 3  # frames in a row that must be the same
 BAR = 37  # pixels of the empty bar that a hidden menu leaves
 MAIN = ("Flight", "Riding along")  # the names of main views, and of recordings from elsewhere whatever comes first
+STYLES = ("dark", "paper")
+LARGEST_SCALE, MOST_PIXELS = 4.0, 8192
+LARGER = "ui.zoom_in_ui"  # the viewer's command that makes everything a tenth larger
 FRAME = (7, 34)  # pixels of the window round a view that fills it, the bar apart
 
 
@@ -57,19 +62,22 @@ def picture(
     panels: bool = True,
     chrome: bool = False,
     dressed: bool = False,
+    scale: float = 1.0,
+    style: str = "dark",
 ) -> PictureReport:
     """Take one picture of a recording.
 
     view : the start of a view's name (Flight, From above, Riding along, ...) to have it alone, None for the window
     at : fraction of the run, or "start", "end"; panels : False leaves out the time panel; chrome : with the viewer's
     menu and badges; dressed : one view, by default the main one, with the title above, the line of the moment below
-    and how far the run has come
+    and how far the run has come; size : of the window in points; scale : pixels to a point, 1 to 4 in tenths, so that
+    the same layout is sharp in print; style : "dark" or "paper", on white
     Raises RecordingError where there is no such view, no Vulkan, or no viewer.
     """
     alone = view is not None or dressed
     if alone:
         size, panels = (size[0] + FRAME[0], size[1] + FRAME[1]), False
-    with Studio(path, size=size, panels=panels, chrome=chrome and not alone) as studio:
+    with Studio(path, size=size, panels=panels, chrome=chrome and not alone, scale=scale, style=style) as studio:
         return studio.shoot(png, view=view or (studio.main if dressed else None), at=at, dressed=dressed)
 
 
@@ -79,23 +87,39 @@ class Studio:
     """
 
     def __init__(
-        self, path: FilePath, *, size: tuple[int, int] = (1600, 900), panels: bool = True, chrome: bool = False
+        self,
+        path: FilePath,
+        *,
+        size: tuple[int, int] = (1600, 900),
+        panels: bool = True,
+        chrome: bool = False,
+        scale: float = 1.0,
+        style: str = "dark",
     ):
         read(path)  # says in one sentence what cannot be shown
         self._path, self._panels, self._chrome = Path(path).resolve(), panels, chrome
-        self._size = (int(size[0]), int(size[1]) + (0 if chrome else BAR))
+        self._zoom, self._paper = tenths_above_one(scale, size), is_paper(style)
+        height = int(size[1]) + (0 if chrome else BAR)
+        self._size = (math.ceil(scale * int(size[0])), math.ceil(scale * height))
+        self._whole = (round(scale * int(size[0])), round(scale * int(size[1])))
+        self._alone = (round(scale * (int(size[0]) - FRAME[0])), round(scale * (int(size[1]) - FRAME[1])))
 
     def __enter__(self) -> Self:
         check_vulkan()
         with contextlib.ExitStack() as begun:
             folder = begun.enter_context(scratch())
-            self._process, port = start_viewer(self._path, self._size, folder)
+            files_shown = [self._path]
+            if self._paper:
+                files_shown.append(paper.write_changes(self._path, folder / "paper.rrd"))
+            self._process, port = start_viewer(files_shown, self._size, folder)
             begun.callback(self._process.end)
             self._client, state = self._wait_for_viewer(f"rerun+http://127.0.0.1:{port}/proxy")
             recording = next(r for r in state.recordings if r.store_id == state.active_recording)
             timelines = {timeline.name: timeline for timeline in recording.timelines}
             self._timeline = timelines[recording.current_timeline]
             self._blueprint = self._asked("for its blueprint", self._client.get_blueprint).blueprint
+            for _ in range(self._zoom):
+                self._asked("for larger letters", lambda: self._client.run_command(LARGER))
             self._shown: tuple[str | None, str | None] | None = None
             self._begun = begun.pop_all()
         return self
@@ -161,9 +185,13 @@ class Studio:
         self._go(at)
         image = self._settled(identity, agree)
         if identity is None and not self._chrome:
-            image = without_bar(image)
+            image = without_bar(image, self._whole)
+        elif identity is not None and not self._panels and self._zoom:
+            image = resized(image, self._alone)
         if dressed:
             image = dress(image, self._words, fraction(at))
+        if self._paper:
+            image = paper.on_paper(image)
         try:
             Path(png).write_bytes(image)
         except OSError as error:
@@ -237,24 +265,63 @@ def hide(blueprint: dict[str, Any], panel: str, archetype: str) -> None:
     blueprint.setdefault(f"/{panel}", {}).setdefault(archetype, {})["state"] = "Hidden"
 
 
-def start_viewer(path: Path, size: tuple[int, int], folder: Path) -> tuple[Child, int]:
+def tenths_above_one(scale: float, size: tuple[int, int]) -> int:
+    """How many times the viewer is asked for larger letters. RecordingError for scales that it cannot show."""
+    tenths = round(10 * scale) if 1 <= scale <= LARGEST_SCALE else 0
+    if not tenths or abs(tenths - 10 * scale) > 1e-6:
+        raise RecordingError(f"a scale is 1 to {LARGEST_SCALE:g} pixels to a point, in tenths, not {scale:g}")
+    if max(size) * scale > MOST_PIXELS:
+        raise RecordingError(
+            f"{size[0]}x{size[1]} at {scale:g} pixels to a point is more than {MOST_PIXELS:,} pixels wide or high"
+        )
+    return tenths - 10
+
+
+def is_paper(style: str) -> bool:
+    """Whether pictures are on white. RecordingError for a style that there is not."""
+    if style not in STYLES:
+        raise RecordingError(f"a picture's style is {' or '.join(STYLES)}, not {style!r}")
+    return style == "paper"
+
+
+def start_viewer(paths: list[Path], size: tuple[int, int], folder: Path) -> tuple[Child, int]:
     """Start Rerun's own binary headless -> process, port."""
     port = free_port()
     environment = dict(os.environ, RUST_LOG="error", RERUN_ANALYTICS="0")
     environment["TMPDIR"] = str(folder)  # what the viewer spills is swept away with the rest
     environment.setdefault("XDG_RUNTIME_DIR", str(folder))
     command = [viewer_binary(), "--headless", "--bind", "127.0.0.1", "--port", str(port)]
-    command += ["--window-size", f"{size[0]}x{size[1]}", "--hide-welcome-screen", "--memory-limit", "4GiB", str(path)]
+    command += [
+        "--window-size",
+        f"{size[0]}x{size[1]}",
+        "--hide-welcome-screen",
+        "--memory-limit",
+        "4GiB",
+        *map(str, paths),
+    ]
     return Child(command, environment), port
 
 
-def without_bar(image: bytes) -> bytes:
-    """A picture of the window without the empty bar at its top."""
+def without_bar(image: bytes, size: tuple[int, int]) -> bytes:
+    """The lower part of a picture of the window, of that size: without the empty bar at its top."""
     from PIL import Image
 
     window = Image.open(io.BytesIO(image))
+    top = window.height - size[1]
     out = io.BytesIO()
-    window.crop((0, BAR, *window.size)).save(out, "PNG")
+    window.crop((0, top, size[0], window.height)).save(out, "PNG")
+    return out.getvalue()
+
+
+def resized(image: bytes, size: tuple[int, int]) -> bytes:
+    """A picture of a view that is a pixel too small or too large where a scale is no whole number."""
+    from PIL import Image
+
+    picture = Image.open(io.BytesIO(image))
+    if picture.size == size:
+        return image
+    out = io.BytesIO()
+    picture.resize(size, Image.Resampling.LANCZOS).save(out, "PNG")
     return out.getvalue()
 
 

@@ -25,7 +25,20 @@ from sailviz.figures.recorded_curves import (
     thinned,
     time_unit,
 )
+from sailviz.figures.recorded_ensembles import (
+    DRIVERS,
+    Ensemble,
+    Offset,
+    draw_drivers,
+    draw_histogram,
+    draw_offset,
+    draw_sigmas,
+    ensembles_of,
+    has_histogram,
+    offsets_of,
+)
 from sailviz.figures.recorded_run import run_of
+from sailviz.figures.recorded_swings import bands_of
 from sailviz.recording.drawing import style as colors
 from sailviz.recording.drawing.landmarks import LARGER
 from sailviz.recording.drawing.samples import is_low
@@ -55,12 +68,17 @@ def draw_recording(
     """Draw quantities of a recording over time, or with `orbit` its orbit, into a PNG, SVG or PDF. Returns the path.
 
     quantities : names as [[expect]] writes them (`radius_au`), the same without a unit, or columns of /environment;
-    without any, those of the usual ones that change. With `orbit` they stand beside it. FigureError, in a sentence,
+    without any, those of the usual ones that change, or where there are ensembles how they spread. With `orbit` they
+    stand beside it. What swings within a revolution is a band about its mean. FigureError, in a sentence,
     for what cannot be drawn or written; RecordingError for what cannot be read.
     """
     kind = file_of(path)
     recording = read(source)
     run = run_of(recording)
+    ensembles = ensembles_of(recording)
+    if ensembles and not quantities and not orbit:
+        entry, options = ensembles_page(run, ensembles)
+        return written(path, kind, entry, style, dpi, options)
     names = list(quantities) or ([] if orbit else telling(run))
     if len(names) > MOST:
         raise FigureError(f"a page has room for {MOST} quantities, not for {len(names)}")
@@ -80,7 +98,15 @@ def curves_page(recording: Recording, run: Run, curves: list[Curve]) -> tuple[En
     """A panel for each quantity, one above the other."""
     size = (9.0, 1.5 + 2.1 * len(curves))
     entry = Entry(run.setting.title, note(run), size, (len(curves), 1), "recorded", "over_time")
-    return entry, {"run": run, "curves": curves}
+    return entry, {"run": run, "curves": curves, "ensembles": ensembles_of(recording)}
+
+
+def ensembles_page(run: Run, ensembles: list[Ensemble]) -> tuple[Entry, dict[str, Any]]:
+    """How ensembles spread about the calm flight, a panel for each coordinate, and where they are at the end."""
+    offsets = offsets_of(ensembles)
+    panels = len(offsets) + any(has_histogram(ensemble) for ensemble in ensembles)
+    entry = Entry(run.setting.title, note(run), (9.0, 1.8 + 2.5 * panels), (panels, 1), "recorded", "spread")
+    return entry, {"run": run, "ensembles": ensembles, "offsets": offsets}
 
 
 def orbit_page(recording: Recording, run: Run, curves: list[Curve]) -> tuple[Entry, dict[str, Any]]:
@@ -103,25 +129,80 @@ def targets_of(recording: Recording) -> list[np.ndarray]:
     return found
 
 
-def over_time(pen: Pen, *panels: Axes, run: Run, curves: list[Curve]) -> None:
-    """Curves on one axis of time."""
+def over_time(pen: Pen, *panels: Axes, run: Run, curves: list[Curve], ensembles: list[Ensemble]) -> None:
+    """Curves on one axis of time; ensembles with what is known of them."""
     for panel, curve in zip(panels, curves, strict=True):
         draw_curve(pen, panel, run, curve)
+        draw_beside(pen, panel, run, curve, ensembles)
         panel.label_outer()
 
 
-def draw_curve(pen: Pen, panel: Axes, run: Run, curve: Curve) -> None:
-    """One quantity over the time since the start."""
+def spread(pen: Pen, *panels: Axes, run: Run, ensembles: list[Ensemble], offsets: list[Offset]) -> None:
+    """Ensembles about the calm flight over time, and at the end."""
     size, word = time_unit(float(run.time[-1] - run.time[0]))
-    time, values = thinned(run.time / size, curve.values)
-    panel.plot(time, broken(values, curve.turn), color=pen.readable(curve.color), gid=curve.name)
+    for panel, offset in zip(panels, offsets, strict=False):
+        draw_offset(pen, panel, ensembles, offset, size)
+        panel.set_xlabel(f"time since the start [{word}]" if offset is offsets[-1] else "")
+    panels[0].legend(loc="best")
+    if len(panels) > len(offsets):
+        draw_histogram(pen, panels[-1], ensembles)
+        panels[-1].legend(loc="best")
+
+
+def draw_curve(pen: Pen, panel: Axes, run: Run, curve: Curve) -> None:
+    """One quantity over the time since the start; where it would be a solid block, as a band about its mean."""
+    size, word = time_unit(float(run.time[-1] - run.time[0]))
+    color, bands = pen.readable(curve.color), bands_of(run, curve.values, curve.turn)
+    if bands is None:
+        time, values = thinned(run.time / size, curve.values)
+        panel.plot(time, broken(values, curve.turn), color=color, gid=curve.name)
+    else:
+        time, short = bands.time / size, f"{curve.name}, least to largest"
+        panel.fill_between(time, bands.low, bands.high, color=color, alpha=0.3, linewidth=0, gid=short)
+        panel.plot(time, bands.mean, color=color, linewidth=1.3, gid=f"{curve.name}, mean")
+        unit, name = time_unit(bands.width)
+        how = "band: least to largest" if np.isnan(bands.mean).all() else "mean, and least to largest"
+        panel.set_title(
+            f"{how} within {bands.width / unit:.2g} {name}", loc="right", fontsize=8.5, color=pen.style.quiet
+        )
     panel.set_title(curve.words, loc="left", fontsize=10.5)
     panel.set_xlabel(f"time since the start [{word}]")
-    panel.set_xlim(time[0], time[-1] if len(time) > 1 else time[0] + 1)
+    ends = run.time / size
+    panel.set_xlim(ends[0], ends[-1] if len(ends) > 1 else ends[0] + 1)
     if curve.logarithmic and np.nanmin(curve.values) > 0:
         panel.set_yscale("log")
     else:
         steady(panel, curve.values)
+
+
+def draw_beside(pen: Pen, panel: Axes, run: Run, curve: Curve, ensembles: list[Ensemble]) -> None:
+    """What is known of ensembles of a quantity: of their distance mean and standard deviations, of what drives them
+    percentiles."""
+    size, _ = time_unit(float(run.time[-1] - run.time[0]))
+    planar = [ensemble for ensemble in ensembles if ensemble.planar]
+    if curve.stem == "radius" and planar:
+        for line in panel.lines:
+            line.set(linewidth=1.1, label="one flight")
+        calm, dashes = planar[0].nominal[:, 0] / curve.size, (0, (5, 3))
+        panel.plot(
+            planar[0].time / size,
+            calm,
+            color=pen.style.ink,
+            linewidth=1.1,
+            linestyle=dashes,
+            zorder=4,
+            label="calm flight",
+            gid=f"{curve.name}, calm flight",
+        )
+        for ensemble in planar:
+            mean, wide = ensemble.mean[:, 0] / curve.size, ensemble.deviation[:, 0] / curve.size
+            draw_sigmas(pen, panel, ensemble, ensemble.time / size, mean, wide, curve.name)
+    elif curve.name in DRIVERS and ensembles:
+        for line in panel.lines:
+            line.set(linewidth=0.7, label="one flight")
+        draw_drivers(pen, panel, ensembles, curve.name, size)
+    if panel.get_legend_handles_labels()[0]:
+        panel.legend(loc="best", frameon=True, facecolor=pen.style.panel, edgecolor="none", framealpha=0.85)
 
 
 def steady(panel: Axes, values: np.ndarray) -> None:

@@ -96,7 +96,7 @@ TIMES = ((3 * 3600.0, 60.0, "min"), (3 * DAY, 3600.0, "h"), (1000 * DAY, DAY, "d
 @dataclass(frozen=True)
 class Curve:
     """A quantity over time. words : with the unit; color : of the recordings; values (n,); turn : after which an angle
-    is the same again, in the unit of the values."""
+    is the same again, in the unit of the values. stem : its name without the unit; size : SI per unit."""
 
     name: str
     words: str
@@ -104,6 +104,8 @@ class Curve:
     values: np.ndarray
     turn: float = np.inf
     logarithmic: bool = False
+    stem: str = ""
+    size: float = 1.0
 
 
 def curve_of(run: Run, name: str) -> Curve:
@@ -122,7 +124,8 @@ def curve_of(run: Run, name: str) -> Curve:
         raise FigureError(f"{name} is never a number in this recording")
     words, color = named(quantity.stem, run.setting.body.name == "Sun")
     unit = UNIT_WORDS.get(quantity.unit, quantity.unit)
-    return Curve(name, f"{words} [{unit}]" if unit else words, color, values, quantity.turn, is_dense(quantity))
+    words = f"{words} [{unit}]" if unit else words
+    return Curve(name, words, color, values, quantity.turn, is_dense(quantity), quantity.stem, quantity.factor)
 
 
 def usual(run: Run, stem: str) -> str:

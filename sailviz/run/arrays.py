@@ -31,6 +31,7 @@ class Craft:
     side: float | None = None  # of a square sail
     tethers: int | None = None
     tether_length: float | None = None
+    spin: str = ""  # of a tether that spins: the plane in which, "along-track" or "across-track"
 
 
 @dataclass(frozen=True)

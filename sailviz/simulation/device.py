@@ -270,4 +270,5 @@ def strength_or_none(scene: Scene, design: Any) -> float | None:
 def craft(scene: Scene) -> Craft:
     """What flies, for its mesh and its labels."""
     record = device_of(scene)
-    return Craft(scene.device.kind, record.label, **record.size(scene.device))
+    spin = steering_of(scene.steering).tether(scene.steering).spin
+    return Craft(scene.device.kind, record.label, spin=spin, **record.size(scene.device))

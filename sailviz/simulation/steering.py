@@ -56,6 +56,7 @@ class Tether(NamedTuple):
 
     attitude: int = plasma_brake.VERTICAL
     spin_factor: float = 1.0  # mean force of a spinning tether over that of one across the flow
+    spin: str = ""  # the plane in which it spins
 
 
 def _hanging(steering: Section) -> Tether:
@@ -103,7 +104,8 @@ def _plain_tether(steering: PlainSteering) -> Tether:
 
 
 def _spinning_tether(steering: SpinningSteering) -> Tether:
-    return Tether(plasma_brake.SPINNING, float(plasma_brake.spin_factor(SPIN_AXES[steering.plane])))
+    factor = float(plasma_brake.spin_factor(SPIN_AXES[steering.plane]))
+    return Tether(plasma_brake.SPINNING, factor, steering.plane)
 
 
 # ---------------------------------------------------------------- fixed angles, and tables of them

@@ -90,10 +90,16 @@ class Picture:
         self.log_static(path, rr.Transform3D(scale=f4(np.broadcast_to(np.asarray(factor, float), 3))))
 
     def log_pose(
-        self, path: str, index: Index, *, translation: ArrayLike | None = None, quaternion: ArrayLike | None = None
+        self,
+        path: str,
+        index: Index,
+        *,
+        translation: ArrayLike | None = None,
+        quaternion: ArrayLike | None = None,
+        scale: ArrayLike | None = None,
     ) -> None:
-        """translation (n, 3), quaternion (n, 4) xyzw."""
-        given = {"translation": translation, "quaternion": quaternion}
+        """translation (n, 3), quaternion (n, 4) xyzw, scale (n, 3)."""
+        given = {"translation": translation, "quaternion": quaternion, "scale": scale}
         values: dict[str, Any] = {name: f4(value) for name, value in given.items() if value is not None}
         self.log_columns(path, index, rr.Transform3D.columns(**values))
 

@@ -133,10 +133,13 @@ def log_craft(picture: Picture, story: Story) -> None:
     tether = tether_length(story)
     if craft.tether:
         craft.log_shape(picture, "/world/rtn/body/shape", True)
-        picture.log_scale("/world/rtn/body/shape", SATELLITE)
         log_tether(picture, "/world/rtn/body/tether", 0.02, 1.8, 0.05)
-        scale = f4(np.repeat(tether[:, None], 3, 1))
-        picture.log_columns("/world/rtn/body/tether", index, rr.Transform3D.columns(scale=scale))
+        picture.log_pose("/world/rtn/body/tether", index, quaternion=story.spin, scale=np.repeat(tether[:, None], 3, 1))
+        if story.spin is None:
+            picture.log_scale("/world/rtn/body/shape", SATELLITE)
+        else:
+            same = np.full((count, 3), SATELLITE)
+            picture.log_pose("/world/rtn/body/shape", index, quaternion=story.spin, scale=same)
     elif craft.pushes:
         craft.log_shape(picture, "/world/rtn/body/shape", True)
         picture.log_scale("/world/rtn/body/shape", FILM)
@@ -190,14 +193,15 @@ def log_drag(picture: Picture, story: Story, tether: np.ndarray) -> None:
     vectors = length[:, None] * down
     hanging = story.craft.tether
     places = np.linspace(0.12, 0.96, MANY) if hanging else np.zeros(1)
-    axis = samples.normal_rtn if hanging else np.zeros((count, 3))
+    axis = story.tether_rtn if hanging else np.zeros((count, 3))
     origins = -tether[:, None, None] * places[None, :, None] * axis[:, None]
     shown = np.repeat(vectors * (0.75 if hanging else 1.0), len(places), axis=0)
     picture.log_arrow_style("/world/rtn/drag", style.PUSH, style.WIDTH["many drags" if hanging else "drag"])
     columns = rr.Arrows3D.columns(origins=f4(origins.reshape(-1, 3)), vectors=f4(shown))
     picture.log_columns("/world/rtn/drag", story.index, columns.partition([len(places)] * count))
     picture.log_label_style("/world/rtn/drag_name", style.PUSH)
-    place = 1.25 * vectors - 0.55 * tether[:, None] * axis
+    below = 0.55 if story.spin is None else 1.02  # out of the way of what turns
+    place = 1.25 * vectors - below * tether[:, None] * (samples.normal_rtn if hanging else axis)
     picture.log_labels("/world/rtn/drag_name", story.index, place, drag_texts(story))
 
 
@@ -214,7 +218,8 @@ def log_plumb(picture: Picture, story: Story, tether: np.ndarray) -> None:
     height = story.distance - 1
     zero = np.zeros_like(height)
     foot = np.stack([-height, zero, zero], 1)
-    top = np.stack([-(tether if story.craft.tether else zero + min(0.03, 0.3 * height.min())), zero, zero], 1)
+    hangs = story.craft.tether and story.spin is None
+    top = np.stack([-(tether if hangs else zero + min(0.03, 0.3 * height.min())), zero, zero], 1)
     picture.log_strip_style("/world/rtn/plumb", style.PLUMB, 0.8)
     picture.log_strips("/world/rtn/plumb", story.index, np.stack([top, foot], 1))
     ground = rr.Points3D.from_fields(radii=points(style.MARK_DOT), colors=[style.CRAFT], show_labels=True)
@@ -283,6 +288,7 @@ def riding_name(story: Story) -> str:
     if story.craft.tether and true:
         drawn = float(np.median(tether_length(story))) * story.frame.unit
         notes = [f"tether drawn about {float(f'{drawn / true:.2g}'):,.0f} times too long"]
+        notes += ["its spin slowed"] if story.spin is not None else []
     return f"Riding along ({', '.join(notes)})"
 
 

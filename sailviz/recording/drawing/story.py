@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from sailviz.frames import from_frame, unit
+from sailviz.frames import body_axes, from_frame, unit
 from sailviz.recording import timelines
 from sailviz.recording.drawing.craft import CraftDrawing
 from sailviz.recording.drawing.log import Index
@@ -22,6 +22,8 @@ RING_TURNS = 1.2  # revolutions from which it is drawn once round
 LIFTED = 0.10  # height over the plane x, y, of S, from which a flight counts as lifted out of it
 BRIGHT_TAIL = 0.10  # of the duration, and at most BRIGHT_TURN revolutions: the bright part of the trail
 BRIGHT_TURN = 0.13
+SPINS = 8  # turns of a spinning tether in a replay, so that the eye follows
+SPIN_AXIS = {"along-track": (0.0, 1.0, 0.0), "across-track": (1.0, 0.0, 0.0)}  # in the body: x ahead, z up
 GROUND = 200e3  # m below which a descent is a plunge, without a mean orbit
 
 
@@ -136,6 +138,30 @@ class Story:
         mean = run.environment.get("mean_altitude_m", np.where(a > 0, a, np.nan) - radius)
         own = np.linalg.norm(run.position, axis=1) - radius
         return np.asarray(np.where((mean > GROUND) & np.isfinite(mean), mean, own))
+
+    @cached_property
+    def spin(self) -> np.ndarray | None:
+        """Quaternions (n, 4) xyzw by which a spinning tether is turned in the frame of its body; None of any other.
+
+        How fast it spins is no part of a run, whose force is the mean over a turn: it goes round `SPINS` times.
+        """
+        plane = self.setting.craft.spin
+        if not plane:
+            return None
+        half = np.pi * SPINS * self.share
+        about, still = [*SPIN_AXIS[plane], 0.0], [0.0, 0.0, 0.0, 1.0]
+        return np.asarray(np.outer(np.sin(half), about) + np.outer(np.cos(half), still))
+
+    @cached_property
+    def tether_rtn(self) -> np.ndarray:
+        """(n, 3) from the tip of a tether to its satellite, in the orbital frame."""
+        hanging = self.samples.normal_rtn
+        if self.spin is None:
+            return hanging
+        body = body_axes(self.samples.stance_rtn, np.tile([0.0, 1.0, 0.0], (len(hanging), 1)))
+        x, y, _, w = self.spin.T
+        turned = np.stack([2 * y * w, -2 * x * w, 1 - 2 * (x * x + y * y)], 1)
+        return np.asarray(np.einsum("nij,nj->ni", body, turned))
 
     @cached_property
     def drag_word(self) -> str:

@@ -33,11 +33,14 @@ def orbital_pose(f, entity):
 
 
 def scale_only(f, entity):
-    """A frame that makes its contents larger, alike in all directions, and neither turns nor moves them."""
+    """A frame that makes its contents larger, alike in all directions, and neither moves them nor, but for what spins,
+    turns them."""
     for row in some(f, 3):
-        own = f.picture.pose(entity, row, entity.rsplit("/", 1)[0] or "/")
-        assert own[0, 0] > 0
-        assert np.array_equal(own, np.diag([own[0, 0]] * 3 + [1.0]))
+        own = f.picture.pose(entity, f.truth.steps[row], entity.rsplit("/", 1)[0] or "/")
+        large = np.linalg.norm(own[:3, 0])
+        assert large > 0
+        same_turn(own[None, :3, :3] / large, f.truth.spin[row : row + 1])
+        assert not own[:3, 3].any()
 
 
 def size(f, entity, row: int = 0) -> float:

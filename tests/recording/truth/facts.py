@@ -183,6 +183,20 @@ class Truth:
         return near & np.concatenate([[False], near[:-1]])
 
     @cached_property
+    def spin(self) -> np.ndarray:
+        """(n, 3, 3) turns, in the body's axes, of a tether that spins: eight in a replay, in the plane of motion or
+        across it, from straight down on; none of any other."""
+        steering = self.resolved.get("steering") or {}
+        phase = 2 * np.pi * 8 * (self.time - self.time[0]) / (self.time[-1] - self.time[0])
+        phase = phase * (steering.get("kind") == "spinning")
+        c, s, zero, one = np.cos(phase), np.sin(phase), 0 * phase, 0 * phase + 1
+        if steering.get("plane") == "across-track":
+            rows = [[one, zero, zero], [zero, c, -s], [zero, s, c]]
+        else:
+            rows = [[c, zero, s], [zero, one, zero], [-s, zero, c]]
+        return np.moveaxis(np.array(rows), -1, 0)
+
+    @cached_property
     def slower(self) -> float:
         """How many times slower a slowed run goes round."""
         return self.duration / self.period / TURNS if self.slowed else 1.0

@@ -228,6 +228,19 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run]] = {
     "thruster": scene("spirals/radial-escape", propagation__outputs=61),
     "orbits": scene("transfers/earth-mercury-orbits", propagation__outputs=121),
     "brake": scene("deorbit/gravity-gradient", propagation__duration_d=0.45, propagation__output_interval_min=7),
+    "spinning": scene(
+        "deorbit/foresail-1",
+        propagation__duration_d=0.45,
+        propagation__output_interval_min=7,
+        propagation__dense=[],
+    ),
+    "spinning across": scene(
+        "deorbit/foresail-1",
+        propagation__duration_d=0.2,
+        propagation__output_interval_min=6,
+        propagation__dense=[],
+        steering__plane="across-track",
+    ),
     "decay": scene(
         "deorbit/aalto-1",
         start__mean_altitude_km=360,

@@ -8,7 +8,7 @@ import numpy as np
 
 from .measure import hue, on_ring, same_direction, same_place
 from .now import braking, told
-from .seen import home, some, spots, texts
+from .seen import body, home, some, spots, texts
 
 TAIL = 0.9  # rad
 START, MIDDLE, END = (100, 190, 255), (170, 140, 255), (244, 92, 150)  # of a descent by altitude
@@ -68,8 +68,9 @@ def drag_arrows(f, entity):
             same_direction(vectors, np.broadcast_to(way[row], vectors.shape), 0.01)
         off = origins - home(f, entity)[row]
         if tether:
-            hung = off @ -f.truth.carried(f.truth.normal)[row]
-            same_place(off, -hung[:, None] * f.truth.carried(f.truth.normal)[row], size=10)
+            up = body(f, "/world/rtn/body/tether")[row][:, 2]
+            hung = off @ -up
+            same_place(off, -hung[:, None] * up, size=10)
             assert 0 < hung.min() < hung.max() < 0.0751
             assert len(off) > 5
         else:

@@ -39,8 +39,10 @@ def fixed(flight, entity: str, vectors) -> np.ndarray:
 
 
 def body(flight, entity: str) -> np.ndarray:
-    """(n, 3, 3), columns: the body's axes of /attitude/quaternion in the view of an entity."""
-    return _body(flight, near(entity))
+    """(n, 3, 3), columns: the body's axes of /attitude/quaternion in the view of an entity; of what spins in the body
+    those that spin."""
+    axes = _body(flight, near(entity))
+    return axes @ flight.truth.spin if "/body/shape" in entity or "/body/tether" in entity else axes
 
 
 @cache

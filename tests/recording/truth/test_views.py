@@ -64,6 +64,26 @@ def test_the_first_view_tells_how_much_longer_the_tether_is_drawn(flights, name)
         assert float(told.group(1).replace(",", "")) == pytest.approx(drawn_length, rel=0.06)
 
 
+@pytest.mark.parametrize(("name", "plane"), [("spinning", 1), ("spinning across", 2)])
+def test_a_spinning_tether_turns_eight_times_from_straight_down_in_its_plane_and_the_view_says_that_it_is_slowed(
+    flights, name, plane
+):
+    """plane : of the radial, the transverse and the normal axis the second one in which it lies."""
+    flight = flights(name)
+    truth = flight.truth
+    (view,) = [view for view in flight.picture.views if view.name.startswith("Riding along")]
+    assert "its spin slowed" in view.name
+    home = truth.place / truth.length
+    tips = [flight.picture.place("/world/rtn/body/tether/tip", "Points3D:positions", step)[0] for step in truth.steps]
+    frame = truth.drawn_frame @ (np.array(tips) - home)[..., None]
+    radial, across, out = frame[:, 0, 0], frame[:, plane, 0], frame[:, 3 - plane, 0]
+    assert np.abs(out).max() < 1e-5, "it leaves its plane"
+    angle = np.unwrap(np.arctan2(across, -radial))
+    assert abs(angle[0]) < 1e-4
+    assert abs(angle[-1]) == pytest.approx(16 * np.pi, abs=1e-3)
+    assert np.allclose(np.diff(angle) / np.diff(truth.time), angle[-1] / (truth.time[-1] - truth.time[0]), rtol=1e-3)
+
+
 @pytest.mark.parametrize("name", FLIGHTS)
 def test_the_whole_flight_and_its_push_are_in_sight_of_the_first_view_all_along(flights, name):
     flight = flights(name)

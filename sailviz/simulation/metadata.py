@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import platform
+from importlib.metadata import version
 from typing import Any
 
-import numba
 import numpy as np
 
 import sailviz
@@ -52,7 +52,7 @@ def setting_of(p: Plan, planets, rows, ensembles=(), measure=True) -> Setting:
             "sailviz": sailviz.__version__,
             "python": platform.python_version(),
             "numpy": np.__version__,
-            "numba": numba.__version__,
+            "numba": version("numba"),
         },
         accuracy=accuracy_in_words(p, measure),
         identity=p.identity,

@@ -11,7 +11,7 @@ import rerun as rr
 from numpy.typing import ArrayLike
 
 from sailviz.recording.drawing.style import ANCHOR, points, rgba
-from sailviz.shapes.primitives import Trimesh
+from sailviz.shapes.primitives import Trimesh, vertex_normals
 
 Color = Sequence[int]  # red, green, blue and perhaps alpha, 0 to 255
 Index = list[rr.TimeColumn]  # the timelines of some rows
@@ -49,7 +49,7 @@ class Picture:
 
     def log_mesh(self, path: str, mesh: Trimesh, color: Color, shaded: bool = True, side: str | None = None) -> None:
         """A mesh of one colour, `side` "front" or "back" alone if given. Unshaded is flat: what glows, and air."""
-        more: dict[str, Any] = {"vertex_normals": f4(mesh.vertex_normals)} if shaded else {}
+        more: dict[str, Any] = {"vertex_normals": f4(vertex_normals(mesh))} if shaded else {}
         if side:
             more["face_rendering"] = side
         faces = np.ascontiguousarray(mesh.faces, np.uint32)

@@ -6,6 +6,7 @@ craft and its tether are drawn far too large, which the view's name says; orbits
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,8 +16,10 @@ from sailviz.frames import body_axes, quaternion, to_frame, unit
 from sailviz.recording.drawing import cameras, style
 from sailviz.recording.drawing.cameras import Camera
 from sailviz.recording.drawing.craft import Glow, log_stowing, log_tether
+from sailviz.recording.drawing.flights import Flight
 from sailviz.recording.drawing.layout import ALL, Space, Span
-from sailviz.recording.drawing.log import Picture, f4
+from sailviz.recording.drawing.log import Color, Picture, f4
+from sailviz.recording.drawing.low_flights import in_front, log_low_flights, season
 from sailviz.recording.drawing.orbit_plane import OrbitPlane, shell_words
 from sailviz.recording.drawing.phrases import push_words
 from sailviz.recording.drawing.planet import Planet
@@ -44,19 +47,25 @@ CIRCLE = 241  # points of the ring
 DESCENT = "Descent (orbits in one plane, to scale)"
 
 
-def log_low_orbit(picture: Picture, story: Story) -> tuple[list[Space], Space, dict[str, Span]]:
-    """Write /world -> the tabs of the main view, the globe, and the spans that they show."""
+def log_low_orbit(
+    picture: Picture, story: Story, flights: Sequence[Flight] = ()
+) -> tuple[list[Space], Space, dict[str, Span]]:
+    """Write /world -> the tabs of the main view, the globe, and the spans that they show. flights : all that are drawn
+    together, the first one first; then what compares them is in front, and old orbits are left out."""
     run = story.samples.run
     picture.log_static("/world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
     log_stars(picture, "/world/stars", style.STARS_RADIUS * story.reach)
     Planet(picture, story.setting, "Sun" in run.bodies).add(story.samples)
-    colors = descent_colors(story)
-    log_orbit(picture, story, colors)
-    plane = log_plane(picture, story, colors)
+    log_orbit(picture, story, *orbit_colors(story, flights))
+    plane = log_plane(picture, story, flights)
     log_craft(picture, story)
     spans: dict[str, Span] = dict.fromkeys(("/world/plane/ladder", "/world/plane/rungs"), ALL) if plane else {}
-    globe = log_globe_eye(picture, story)
-    return [riding_along(story), from_afar(globe), *(descent(story) if plane else [])], globe, spans
+    globe = log_globe_eye(picture, story, flights[0].color if flights else style.CRAFT)
+    tabs = [riding_along(story), from_afar(globe), *(descent(story) if plane else [])]
+    if flights:
+        log_low_flights(picture, flights, np.array(globe.camera.position), plane)
+        return tabs[::-1], globe, {}
+    return tabs, globe, spans
 
 
 def orbit_words(story: Story) -> list[str]:
@@ -78,10 +87,18 @@ def descent_colors(story: Story, rows: np.ndarray | slice = slice(None), factor:
     return style.ramp(np.clip((altitude[0] - altitude[rows]) / fall, 0, 1), style.ALTITUDE_RAMP, factor)
 
 
-def log_orbit(picture: Picture, story: Story, colors: np.ndarray) -> None:
+def orbit_colors(story: Story, flights: Sequence[Flight]) -> tuple[np.ndarray, np.ndarray]:
+    """Colours (n,) of the bright and of the dim part of the orbit: by altitude, or among flights the flight's own."""
+    if not flights:
+        return descent_colors(story), descent_colors(story, factor=0.8)
+    own = flights[0].color
+    bright, dim = (np.full(len(story.time), style.rgba(color), np.uint32) for color in (own, style.dim(own, 0.8)))
+    return bright, dim
+
+
+def log_orbit(picture: Picture, story: Story, colors: np.ndarray, faint: np.ndarray) -> None:
     """The orbit of the moment as a ring, bright behind the craft."""
     samples = story.samples
-    faint = descent_colors(story, factor=0.8)
     line = rr.LineStrips3D.from_fields(strips=[f4(circle(CIRCLE))], radii=points(style.WIDTH["ring"]))
     picture.log_static("/world/orbit", line)
     inertial = np.broadcast_to(np.eye(3), samples.axes.shape)
@@ -111,15 +128,17 @@ def tails(story: Story, count: int = 16) -> np.ndarray:
     return np.asarray(np.einsum("nij,kj->nki", axes, circle) * distance[..., None])
 
 
-def log_plane(picture: Picture, story: Story, colors: np.ndarray) -> bool:
-    """What lies in the orbit's plane, to scale, where a flight is long enough to be compared with itself."""
+def log_plane(picture: Picture, story: Story, flights: Sequence[Flight]) -> bool:
+    """What lies in the orbit's plane, to scale, where a flight is long enough to be compared with itself; among flights
+    without its old orbits."""
     if story.frame.turns <= PLANE_TURNS:
         return False
-    plane = OrbitPlane(picture, story.samples.run, story.frame, LADDER)
-    plane.add(story.samples, colors)
-    rows = story.ladder(LADDER)
-    samples = story.samples
-    plane.add_ladder(samples.taken(rows), samples.index_of, rows, descent_colors(story, rows))
+    name, color = (f"{flights[0].name} ", flights[0].color) if flights else ("", style.CRAFT)
+    plane = OrbitPlane(picture, story.samples.run, story.frame, color)
+    plane.add(story.samples, orbit_colors(story, flights)[0], name)
+    if not flights:
+        rows, samples = story.ladder(LADDER), story.samples
+        plane.add_ladder(samples.taken(rows), samples.index_of, rows, descent_colors(story, rows), LADDER)
     return True
 
 
@@ -228,25 +247,21 @@ def log_plumb(picture: Picture, story: Story, tether: np.ndarray) -> None:
     picture.log_columns("/world/rtn/ground", story.index, rr.Points3D.columns(positions=f4(foot), labels=texts))
 
 
-def log_globe_eye(picture: Picture, story: Story) -> Space:
-    """The globe from afar, on its day side, in a frame that turns with the Sun; the craft is named while it is in
-    front."""
+def log_globe_eye(picture: Picture, story: Story, color: Color) -> Space:
+    """The globe from afar, on its day side, in a frame that turns with the Sun; the craft is named, in a colour, while
+    it is in front."""
     samples, sun = story.samples, story.samples.run.bodies.get("Sun")
     pole = samples.axes[0, :, 2]
     towards = cameras.over_planet(pole, None if sun is None else unit(sun[0]))
     distance = FAR * float(story.distance[0])
     origin = "/" if sun is None else "/world/season"
-    azimuth = np.zeros(len(samples)) if sun is None else np.arctan2(sun[:, 1], sun[:, 0])
-    c, s = np.cos(azimuth), np.sin(azimuth)
+    azimuth = season(story, story.time)
+    c, s = np.cos(azimuth[0]), np.sin(azimuth[0])
     x, y, z = distance * towards
-    eye = np.array([c[0] * x + s[0] * y, c[0] * y - s[0] * x, z])
-    eyes = np.stack([c * eye[0] - s * eye[1], s * eye[0] + c * eye[1], 0 * c + eye[2]], 1)
-    ray = unit(samples.position - eyes)
-    along = -np.sum(eyes * ray, 1)
-    missed = np.linalg.norm(eyes + along[:, None] * ray, axis=1)
-    behind = (missed < 1) & (np.linalg.norm(samples.position - eyes, axis=1) > along)
-    picture.log_label_style("/world/craft/name", style.CRAFT, story.setting.craft.label or "craft")
-    picture.log_labels("/world/craft/name", story.index, np.where(behind[:, None], np.nan, 1.06 * samples.position))
+    eye = np.array([c * x + s * y, c * y - s * x, z])
+    picture.log_label_style("/world/craft/name", color, story.setting.craft.label or "craft")
+    place = in_front(samples.position, eye, azimuth)
+    picture.log_labels("/world/craft/name", story.index, place)
     hidden = ("drag", "drag_name", "flight", "ground", "plumb", "body", "drag_sail")
     contents = (
         "+ /world/**",

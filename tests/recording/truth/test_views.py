@@ -129,8 +129,12 @@ def test_no_name_lies_on_another_in_the_first_the_middle_and_the_last_frame(flig
         pose = flight.picture.pose(view.origin, step) if view.origin != "/" else np.eye(4)
         found = []
         for entity in named:
-            spot = flight.picture.place(entity, "Points3D:positions", step)
-            (words,) = flight.picture.at(entity, "Points3D:labels", step)
+            own = whose(flight, entity).truth
+            here = int(np.searchsorted(own.clock, flight.truth.clock[row], "right")) - 1
+            if here < 0:
+                continue
+            spot = flight.picture.place(entity, "Points3D:positions", own.steps[here])
+            (words,) = flight.picture.at(entity, "Points3D:labels", own.steps[here])
             for place in spot:
                 (x, y), half = on_screen((place - pose[:3, 3])[None] @ pose[:3, :3], view)[0], LETTER * len(words) / 2
                 found.append((502.5 * x - half - 6, 502.5 * x + half + 6, -288 * y, -288 * y + TALL, words))
@@ -164,16 +168,33 @@ def test_the_trail_has_the_past_behind_the_craft_and_the_future_ahead(flights, n
     assert seen >= 3
 
 
+def whose(first, entity):
+    """The flight in whose rows an entity stands."""
+    words = [flight.word for flight in first.all[1:]]
+    of_first = entity.startswith(("/plots/apart/", "/plots/difference/"))
+    word = next((word for word in words if word in entity.split("/")), "") if not of_first else ""
+    return first.beside(word) if word else first
+
+
 @pytest.mark.parametrize("name", FLIGHTS)
 def test_every_row_that_is_drawn_stands_at_its_own_time(flights, name):
-    flight = flights(name)
-    rows = {step: (step, *times) for step, *times in flight.picture.clocks["/state"]}
-    for entity, clocks in flight.picture.clocks.items():
+    first = flights(name)
+    flight = first
+    for entity, clocks in first.picture.clocks.items():
+        flight = whose(first, entity)
+        state = f"/flight/{flight.word}/state" if flight.word else "/state"
+        rows = {step: (step, *times) for step, *times in first.picture.clocks[state]}
         if entity.startswith("/plots/"):  # just within a gap a curve is broken
             clocks = {clock for clock in clocks if clock[0] not in flight.truth.breaks or clock == rows[clock[0]]}
-        if entity not in ("/events", "/log") and not re.search(r"/\d+/(band|mean)$", entity):
+        if not entity.endswith("/events") and entity != "/log" and not re.search(r"/\d+/(band|mean)$", entity):
             assert all(clock == rows[clock[0]] for clock in clocks), entity
+    flight = first
+    rows = {step: (step, *times) for step, *times in first.picture.clocks["/state"]}
     for entity, components in flight.picture.between.items():
+        if len(first.all) > 1 and (entity == "/now" or NAMED.match(entity)):  # while the first flight does not fly
+            ends = whose(first, entity).truth.clock[[0, -1]] * 1e9
+            assert all(not ends[0] <= ns <= ends[1] for rows_between in components.values() for ns, _ in rows_between)
+            continue
         for rows_between in components.values():
             for (start, end), (ns, _) in zip(flight.truth.gaps, sorted(rows_between), strict=True):
                 assert start < ns * 1e-9 < end, entity

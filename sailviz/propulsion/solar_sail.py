@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sailviz.compiled import entry, inlined
+from sailviz.compiled import compiled, inlined
 from sailviz.constants import AU, GRAVITY_AT_1_AU, RADIATION_PRESSURE
 from sailviz.propulsion.rows import as_rows
 
@@ -121,8 +121,9 @@ def sail_force(ux, uy, uz, inverse, nx, ny, nz, c, strength, b1, b2, b3):
     )
 
 
-@entry("d2 d2 d d d d D2")
-def _accelerations(position, normal, strength, b1, b2, b3, out):
+@compiled
+def _accelerations(position, normal, strength, b1, b2, b3):
+    out = np.empty_like(position)
     for i in range(len(position)):
         x, y, z = position[i, 0], position[i, 1], position[i, 2]
         nx, ny, nz = normal[i, 0], normal[i, 1], normal[i, 2]
@@ -130,7 +131,7 @@ def _accelerations(position, normal, strength, b1, b2, b3, out):
         out[i, 0], out[i, 1], out[i, 2] = sail_force(
             x / r, y / r, z / r, 1 / r, nx, ny, nz, (x * nx + y * ny + z * nz) / r, strength, b1, b2, b3
         )
-    return 0
+    return out
 
 
 def acceleration(
@@ -145,6 +146,4 @@ def acceleration(
     film = FILMS[film] if isinstance(film, str) else film
     (position, normal), shape = as_rows(position, normal)
     strength = characteristic_acceleration * AU**2 / film.total
-    out = np.empty_like(position)
-    _accelerations(position, normal, strength, film.b1, film.b2, film.b3, out)
-    return out.reshape(shape)
+    return _accelerations(position, normal, strength, film.b1, film.b2, film.b3).reshape(shape)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import platform
-from importlib.metadata import version
 from typing import Any
 
+import numba
 import numpy as np
 
 import sailviz
@@ -35,7 +35,7 @@ def setting_of(p: Plan, planets, rows, ensembles=(), measure=True) -> Setting:
     duration = scene.propagation.duration
     return Setting(
         title=scene.title,
-        family=family_of(scene),
+        family=scene.family or _family(scene),
         about=scene.about,
         look_for=tuple(scene.look_for),
         thesis=scene.thesis,
@@ -52,7 +52,7 @@ def setting_of(p: Plan, planets, rows, ensembles=(), measure=True) -> Setting:
             "sailviz": sailviz.__version__,
             "python": platform.python_version(),
             "numpy": np.__version__,
-            "numba": version("numba"),
+            "numba": numba.__version__,
         },
         accuracy=accuracy_in_words(p, measure),
         identity=p.identity,
@@ -63,10 +63,7 @@ def setting_of(p: Plan, planets, rows, ensembles=(), measure=True) -> Setting:
     )
 
 
-def family_of(scene) -> str:
-    """The family in whose way a scene is drawn: its own word, or what its sections suggest."""
-    if scene.family:
-        return str(scene.family)
+def _family(scene) -> str:
     if scene.body == "earth":
         return "deorbit"
     if scene.environment.solar_wind.kind != "steady" or scene.ensemble or scene.chaos:

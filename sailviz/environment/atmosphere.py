@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sailviz.compiled import compiled, inlined
+from sailviz.compiled import entry, inlined
 from sailviz.constants import DAY
 from sailviz.environment.grid import cell, flat, fraction, places, quantity
 from sailviz.environment.ionosphere import exponential
@@ -211,10 +211,11 @@ def exponential_air_drag(x, y, z, vx, vy, vz, m, r, rotation, p):
     return air_drag(x, y, z, vx, vy, vz, rotation, density * p.drag_area / m)
 
 
-@compiled
+@entry("d1 d2 D1")
 def _lookups(p, where, result):
     for i in range(where.shape[1]):
         result[i] = lookup(p, 0, where[0, i], where[1, i], where[2, i], where[3, i], where[4, i])
+    return 0
 
 
 def density(latitude, local_time, altitude, f107, row=None, time=0.0):

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sailviz.compiled import compiled, inlined
+from sailviz.compiled import entry, inlined
 from sailviz.constants import ATOMIC_MASS
 from sailviz.environment.grid import cell, flat, places, quantity
 from sailviz.shipped import shipped_folder
@@ -91,11 +91,12 @@ def plasma_in(p, place):
     return np.exp(quantity(p, place, 0, 2)), quantity(p, place, 1, 2)
 
 
-@compiled
+@entry("d1 d2 D2")
 def _lookups(p, where, result):
     for i in range(where.shape[1]):
         n, m = lookup(p, 0, where[0, i], where[1, i], where[2, i], where[3, i])
         result[0, i], result[1, i] = n, m
+    return 0
 
 
 @cache

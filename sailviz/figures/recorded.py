@@ -37,12 +37,12 @@ from sailviz.figures.recorded_ensembles import (
     has_histogram,
     offsets_of,
 )
-from sailviz.figures.recorded_run import run_of
 from sailviz.figures.recorded_swings import bands_of
 from sailviz.recording.drawing import style as colors
 from sailviz.recording.drawing.landmarks import LARGER
 from sailviz.recording.drawing.samples import is_low
 from sailviz.recording.reader import Recording, read
+from sailviz.recording.recorded_run import run_of
 from sailviz.recording.timelines import take
 from sailviz.run.arrays import Run
 

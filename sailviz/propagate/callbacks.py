@@ -7,10 +7,12 @@ module-level function of SIGNATURE beside its formula, and `callback(function, n
     NUMBERS = layout(Parameters)
 
     def force(time, state, parameters, own, number, out):
-        s, p, a = carray(state, (STATE,)), carray(own, (1,), NUMBERS)[0], carray(out, (4,))
+        s, p, a = array_at(state, STATE), record_at(own, NUMBERS), array_at(out, 4)
 
-`layout` and STATE come from sailviz.compiled; Parameters is a NamedTuple of floats, the callback's own numbers. What
-comes out, four numbers: of a steering law the normal, made a unit vector (zero: no thrust), and the throttle; of a
+`layout` and STATE come from sailviz.compiled, array_at and record_at from parameters.py; Parameters is a NamedTuple of
+floats, the callback's own numbers. Like an `entry`, a callback creates no array and raises nothing.
+
+What comes out, four numbers: of a steering law the normal, made a unit vector (zero: no thrust), and the throttle; of a
 device the acceleration m/s2 at thrust factor `number` and the mass flow kg/s; of a force the acceleration m/s2 and
 nothing, `number` the thrust factor; of a voltage control the thrust factor from break `number` on.
 """
@@ -20,24 +22,23 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-import numba
-from llvmlite import ir
-from numba.core import cgutils, types
-from numba.extending import intrinsic
+from sailviz.compiled import c_function, inlined, late
 
-from sailviz.compiled import cached_c_function, inlined
-from sailviz.propagate.parameters import PARAMETERS
+# how numba writes it: time, state (7,) in, vector (3,) out
+USER_SIGNATURE = "void(float64, CPointer(float64), CPointer(float64))"
 
-_VECTOR = types.CPointer(types.float64)
-USER_SIGNATURE = types.void(types.float64, _VECTOR, _VECTOR)  # time, state (7,) in, vector (3,) out
-# time s, state (STATE,), record of PARAMETERS, the callback's own numbers, number; out (4,)
-SIGNATURE = types.void(
-    types.float64, _VECTOR, types.CPointer(numba.from_dtype(PARAMETERS)), types.voidptr, types.float64, _VECTOR
-)
+call_at = late("sailviz.propagate.intrinsics", "call_at")
+user_vector = late("sailviz.propagate.intrinsics", "user_vector")
+
+
+def _signature() -> Any:
+    from sailviz.propagate.intrinsics import SIGNATURE
+
+    return SIGNATURE
 
 
 class Callback(NamedTuple):
-    """A C function of SIGNATURE and the numbers that are its own."""
+    """A function of SIGNATURE (intrinsics.py), in numba's convention, and the numbers that are its own."""
 
     address: int
     numbers: Sequence[float] = ()
@@ -45,65 +46,14 @@ class Callback(NamedTuple):
 
 def callback(function: Callable[..., None], numbers: Sequence[float] = ()) -> Callback:
     """A function of SIGNATURE, compiled on first use."""
-    return Callback(int(cached_c_function(function, SIGNATURE).address or 0), numbers)
-
-
-def _stored(builder, values):
-    """Numbers on the stack."""
-    real = ir.DoubleType()
-    place = cgutils.alloca_once(builder, real, size=len(values))
-    for i, value in enumerate(values):
-        builder.store(value, builder.gep(place, [ir.Constant(ir.IntType(64), i)], source_etype=real))
-    return place
-
-
-def _results(context, builder, signature, out, count):
-    real = ir.DoubleType()
-    places = [builder.gep(out, [ir.Constant(ir.IntType(64), i)], source_etype=real) for i in range(count)]
-    return context.make_tuple(builder, signature.return_type, [builder.load(place, typ=real) for place in places])
-
-
-@intrinsic
-def user_vector(typing, address, t, x, y, z, vx, vy, vz, m):
-    """Three numbers from the C function of USER_SIGNATURE at an integer address."""
-
-    def generate(context, builder, signature, arguments):
-        real = ir.DoubleType()
-        pointer = real.as_pointer()
-        state = _stored(builder, arguments[2:])
-        out = cgutils.alloca_once(builder, real, size=3)
-        function = builder.inttoptr(arguments[0], ir.FunctionType(ir.VoidType(), [real, pointer, pointer]).as_pointer())
-        builder.call(function, [arguments[1], state, out])
-        return _results(context, builder, signature, out, 3)
-
-    return types.UniTuple(types.float64, 3)(types.int64, *([types.float64] * 8)), generate
-
-
-@intrinsic
-def _call(typing, address, own, t, x, y, z, vx, vy, vz, m, nx, ny, nz, p, number):
-    """Four numbers from the C function of SIGNATURE at an integer address; `own` is the address of its numbers."""
-
-    def generate(context, builder, signature, arguments):
-        real, byte = ir.DoubleType(), ir.IntType(8).as_pointer()
-        pointer = real.as_pointer()
-        state = _stored(builder, arguments[3:13])
-        out = cgutils.alloca_once(builder, real, size=4)
-        own = builder.inttoptr(arguments[1], byte)
-        kind = ir.FunctionType(ir.VoidType(), [real, pointer, byte, byte, real, pointer])
-        function = builder.inttoptr(arguments[0], kind.as_pointer())
-        record = builder.bitcast(arguments[13], byte)
-        builder.call(function, [arguments[2], state, record, own, arguments[14], out])
-        return _results(context, builder, signature, out, 4)
-
-    numbers = [types.float64] * 11
-    return types.UniTuple(types.float64, 4)(types.int64, types.int64, *numbers, p, types.float64), generate
+    return Callback(c_function(function, _signature)[0], numbers)
 
 
 @inlined
 def call(address, place, t, x, y, z, vx, vy, vz, m, nx, ny, nz, p, number):
-    """Four numbers from the C function of SIGNATURE at an integer address, its own numbers at a place of the tables."""
+    """Four numbers from the function of SIGNATURE at an integer address, its own numbers at a place of the tables."""
     own = p.places.address + 8 * place
-    return _call(address, own, t, x, y, z, vx, vy, vz, m, nx, ny, nz, p, number)
+    return call_at(address, own, t, x, y, z, vx, vy, vz, m, nx, ny, nz, p, number)
 
 
 def user_address(function: Any, kind: str) -> tuple[int, object]:
@@ -114,6 +64,8 @@ def user_address(function: Any, kind: str) -> tuple[int, object]:
     """
     if hasattr(function, "address") and hasattr(function, "native_name"):
         return int(function.address), function
+    import numba
+
     if not isinstance(function, numba.core.registry.CPUDispatcher):
         raise TypeError(f"{kind} must be a numba.cfunc or an @njit function (t, x, y, z, vx, vy, vz, m) -> (3 floats)")
 

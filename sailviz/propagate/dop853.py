@@ -13,10 +13,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.compiled import compiled, inlined
+from sailviz.compiled import entry, inlined
 from sailviz.propagate import dop853_coefficients as c
 from sailviz.propagate.dynamics import SIZE, derivative
 from sailviz.propagate.events import Watch
+from sailviz.propagate.parameters import PARAMETERS
 from sailviz.propagate.patience import first_piece
 from sailviz.propagate.stepping import (
     CLOCK,
@@ -276,11 +277,11 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
     UNDERFLOW or NOT_FINITE: the integration broke down at time(s). patience : Patience of this and other calls; where
     it ends, so does the integration, with its status: NO_PROGRESS, TOO_MANY steps or TIME_IS_UP. Ctrl-C is heard.
     """
-    numbers = float(t_end), float(tolerance), float(largest_step)
-    return in_pieces(advance_compiled, s, model, (breaks, factors, *watch, t_out, out, *numbers), t_end, patience)
+    numbers = t_end, tolerance, largest_step
+    return in_pieces(advance_compiled, s, model, (breaks, factors, *watch), t_out, out, numbers, patience)
 
 
-@compiled
+@entry("D2 I1 D1 D2 R1 d1 D1 i1 d1 i1 i1 d1 D2 d d d i", PARAMETERS)
 def advance_compiled(
     work, count, sign, event, parameters, breaks, factors,
     kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step, piece,

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sailviz.compiled import called, compiled, inlined
+from sailviz.compiled import called, entry, inlined
 from sailviz.environment import atmosphere
 from sailviz.environment.atmosphere import exponential_air_drag
 from sailviz.environment.gravity import gravity
@@ -286,13 +286,11 @@ def derivative(t, y, factor, p, out):
     out[0], out[1], out[2], out[3], out[4], out[5], out[6] = vx, vy, vz, ax, ay, az, m_dot
 
 
-@compiled
-def observe_compiled(time, states, factor, parameters):
-    """`observe` in compiled code."""
-    n = len(time)
+@entry("d1 d2 d1 r1 D2 D2 D1", PARAMETERS)
+def observe_compiled(time, states, factor, parameters, normal, acceleration, on):
+    """`observe` without its arrays made."""
     p = parameters[0]
-    normal, acceleration, on = np.zeros((n, 3)), np.zeros((n, 3)), np.ones(n)
-    for i in range(n):
+    for i in range(len(time)):
         t, x, y, z = time[i], states[0, i], states[1, i], states[2, i]
         vx, vy, vz, m = states[3, i], states[4, i], states[5, i], states[6, i]
         r = np.sqrt(x * x + y * y + z * z)
@@ -305,7 +303,7 @@ def observe_compiled(time, states, factor, parameters):
             ax, ay, az = ax + bx, ay + by, az + bz
         normal[i, 0], normal[i, 1], normal[i, 2] = nx, ny, nz
         acceleration[i, 0], acceleration[i, 1], acceleration[i, 2] = ax, ay, az
-    return normal, acceleration, on
+    return 0
 
 
 def observe(
@@ -313,12 +311,11 @@ def observe(
 ) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any], np.ndarray[Any, Any]]:
     """What the craft did at given states. time (n,), states (7, n), factor (n,) -> normal (n, 3), acceleration of
     device (but not a plasma brake) and user force together (n, 3) m/s2, throttle of the steering law (n,)."""
-    count = len(time)
-    if count <= AT_ONCE or not (
-        model.parameters["callbacks"]["user_steering"][0] or model.parameters["callbacks"]["user_force"][0]
-    ):
-        return observe_compiled(time, states, factor, model.parameters)
-    parts = [slice(first, first + AT_ONCE) for first in range(0, count, AT_ONCE)]
-    found = [observe_compiled(time[i], np.ascontiguousarray(states[:, i]), factor[i], model.parameters) for i in parts]
-    normal, acceleration, on = (np.concatenate(column) for column in zip(*found, strict=True))
+    n, callbacks = len(time), model.parameters["callbacks"]
+    normal, acceleration, on = np.zeros((n, 3)), np.zeros((n, 3)), np.ones(n)
+    piece = AT_ONCE if callbacks["user_steering"][0] or callbacks["user_force"][0] else n
+    for first in range(0, n, max(piece, 1)):
+        i = slice(first, first + piece)
+        part = np.ascontiguousarray(states[:, i])
+        observe_compiled(time[i], part, factor[i], model.parameters, normal[i], acceleration[i], on[i])
     return normal, acceleration, on

@@ -13,7 +13,6 @@ A callback of the integrator: compiled when the first scene needs it.
 from __future__ import annotations
 
 import numpy as np
-from numba import carray
 
 from sailviz.compiled import STATE, called, inlined
 from sailviz.environment import atmosphere, ionosphere, sun
@@ -23,7 +22,7 @@ from sailviz.environment.grid import beyond, cell_at
 from sailviz.environment.solar_level import flux
 from sailviz.propagate.callbacks import Callback, callback
 from sailviz.propagate.low_orbit_callback import plasma_at, power_available, power_drawn
-from sailviz.propagate.parameters import array_at
+from sailviz.propagate.parameters import PARAMETERS, array_at, record_at
 
 LONGEST_ARC = 0.3  # rad that a Kepler arc may span; as J2's pull turns, 70 m are missed there, a hundredth of a second
 LOOKS = 4  # at most along a step, so that a cell that is left and entered again is seen
@@ -209,8 +208,8 @@ def next_edge(t, span, y, p):
 def _ahead(time, state, parameters, own, number, out):
     """Before a step of at most `number` s: hold what it keeps to. state : its last three the acceleration, m/s2.
     out : s after which the step has to end, and 1 where the acceleration has jumped here."""
-    p = carray(parameters, (1,))[0]
-    y, tables, found = carray(state, (STATE,)), array_at(p.places.address, p.places.end), carray(out, (4,))
+    p = record_at(parameters, PARAMETERS)
+    y, tables, found = array_at(state, STATE), array_at(p.places.address, p.places.end), array_at(out, 4)
     jumps = enter(time, y, p, tables)
     r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
     v2 = y[3] * y[3] + y[4] * y[4] + y[5] * y[5]

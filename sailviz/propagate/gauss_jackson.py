@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.compiled import compiled
+from sailviz.compiled import entry
 from sailviz.propagate import gauss_jackson_coefficients as c
 from sailviz.propagate.dop853 import attempt, interpolant, next_step, stages
 from sailviz.propagate.dynamics import SIZE, derivative, loses_mass
@@ -51,6 +51,7 @@ from sailviz.propagate.gauss_jackson_steps import (
     quintic,
     step_rule,
 )
+from sailviz.propagate.parameters import PARAMETERS
 from sailviz.propagate.patience import first_piece
 from sailviz.propagate.stepping import (
     CLOCK,
@@ -120,20 +121,20 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
         raise ValueError(
             "the Gauss-Jackson integrator keeps the mass constant; a thruster with a specific impulse does not."
         )
-    numbers = float(t_end), float(tolerance), float(largest_step)
-    return in_pieces(advance_compiled, s, model, (breaks, factors, *watch, t_out, out, *numbers), t_end, patience)
+    others = model.parameters.copy()
+    others["gravity"]["mu"] = 0.0
+    numbers = t_end, tolerance, largest_step
+    return in_pieces(advance_compiled, s, model, (others, breaks, factors, *watch), t_out, out, numbers, patience)
 
 
-@compiled
+@entry("D2 I1 D1 D2 D2 D1 R1 R1 d1 D1 i1 d1 i1 i1 d1 D2 d d d i", PARAMETERS)
 def advance_compiled(
-    work, count, sign, event, history, grid, parameters, breaks, factors,
+    work, count, sign, event, history, grid, parameters, others, breaks, factors,
     kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step, piece,
 ):  # fmt: skip
     """`advance` with its tuples taken apart."""
     s = Integration(work, count, sign, event)
     p = parameters[0]
-    others = parameters.copy()
-    others[0].gravity.mu = 0.0
     perturbations = others[0]  # all but the central attraction
     watch = Watch(kinds, levels, senses, actions)
     n = t_out.shape[0]

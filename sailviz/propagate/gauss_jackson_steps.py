@@ -8,11 +8,8 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from llvmlite import ir
-from numba.core import types
-from numba.extending import intrinsic
 
-from sailviz.compiled import called, inlined
+from sailviz.compiled import called, inlined, late
 from sailviz.propagate import gauss_jackson_coefficients as c
 from sailviz.propagate.dynamics import SIZE, derivative
 from sailviz.propagate.events import measure
@@ -51,38 +48,8 @@ class Multistep(NamedTuple):
     grid: np.ndarray  # (21,) see the places above
 
 
-@intrinsic
-def weighted_sums(typing, history, newest):
-    """The twelve sums over the accelerations up to row newest that a step needs: x, y, z of POSITION, VELOCITY,
-    EXTRAPOLATION, POSITION_OTHERS. Written as vectors of four, which the compiler does not find by itself."""
-
-    def generate(context, builder, signature, arguments):
-        array = context.make_array(signature.args[0])(context, builder, arguments[0])
-        real, word, vector = ir.DoubleType(), ir.IntType(64), ir.VectorType(ir.DoubleType(), 4)
-        tables = (c.POSITION, c.VELOCITY, c.EXTRAPOLATION, c.POSITION_OTHERS)
-        sums = [ir.Constant(vector, [0.0] * 4)] * len(tables)
-        for lag in range(LAGS - 1, -1, -1):
-            place = builder.mul(builder.sub(arguments[1], ir.Constant(word, lag)), ir.Constant(word, 4))
-            row = builder.bitcast(builder.gep(array.data, [place], source_etype=real), vector.as_pointer())
-            acceleration = builder.load(row, typ=vector)
-            acceleration.align = 8
-            for i, table in enumerate(tables):
-                product = builder.fmul(acceleration, ir.Constant(vector, [table[lag]] * 4), flags=("contract",))
-                sums[i] = builder.fadd(sums[i], product, flags=("contract",))
-        parts = [builder.extract_element(s, ir.Constant(ir.IntType(32), j)) for s in sums for j in range(3)]
-        return context.make_tuple(builder, signature.return_type, parts)
-
-    return types.UniTuple(types.float64, 12)(history, types.int64), generate
-
-
-@intrinsic
-def product_left(typing, a, b, product):
-    """a b - product without rounding in between."""
-
-    def generate(context, builder, signature, arguments):
-        return builder.fma(arguments[0], arguments[1], builder.fneg(arguments[2]))
-
-    return types.float64(types.float64, types.float64, types.float64), generate
+weighted_sums = late("sailviz.propagate.intrinsics", "weighted_sums")
+product_left = late("sailviz.propagate.intrinsics", "product_left")
 
 
 @inlined

@@ -6,9 +6,8 @@ A callback: compiled when the first scene needs it.
 from __future__ import annotations
 
 import numpy as np
-from numba import carray
 
-from sailviz.compiled import STATE, called, compiled, inlined
+from sailviz.compiled import STATE, called, entry, inlined
 from sailviz.constants import ELEMENTARY_CHARGE, MU_EARTH, ROTATION_EARTH
 from sailviz.environment import atmosphere, ionosphere, magnetic, sun
 from sailviz.environment.eclipse import NO_SHADOW, sunlit
@@ -16,7 +15,7 @@ from sailviz.environment.gravity import geodetic_altitude
 from sailviz.environment.grid import held_cell
 from sailviz.environment.solar_level import flux
 from sailviz.propagate.callbacks import Callback, callback
-from sailviz.propagate.parameters import array_at
+from sailviz.propagate.parameters import PARAMETERS, array_at, record_at
 from sailviz.propulsion.plasma_brake import (
     NEGATIVE,
     SPINNING,
@@ -159,8 +158,8 @@ def brake_force(t, x, y, z, vx, vy, vz, r, density, ion_mass, light, p):
 
 def _acceleration(t, state, parameters, own, factor, out):
     """Acceleration, m/s2, of tabled air and of the brake. They share what they need to know of the place."""
-    p = carray(parameters, (1,))[0]
-    y, tables, a = carray(state, (STATE,)), array_at(p.places.address, p.places.end), carray(out, (4,))
+    p = record_at(parameters, PARAMETERS)
+    y, tables, a = array_at(state, STATE), array_at(p.places.address, p.places.end), array_at(out, 4)
     x, yy, z, vx, vy, vz, m = y[0], y[1], y[2], y[3], y[4], y[5], y[6]
     r = np.sqrt(x * x + yy * yy + z * z)
     latitude, local_time, altitude, f107, light = surroundings(t, x, yy, z, r, p)
@@ -187,16 +186,21 @@ def low_orbit_forces() -> Callback:
 COLUMNS = 20  # the last two are vectors
 
 
-@compiled
 def observe_low_orbit(time, states, factor, parameters):
     """What surrounds the craft and what its brake does, at given states. time (n,), states (7, n), factor (n,) ->
     (COLUMNS, n), SI, as named above: the force on the tether, N, and the unit vector from its tip to
     the satellite are vectors. What a brake does is 0 where it is off."""
+    out = np.zeros((COLUMNS, len(time)))
+    _observe(time, states, factor, parameters, out)
+    return out
+
+
+@entry("d1 d2 d1 r1 D2", PARAMETERS)
+def _observe(time, states, factor, parameters, out):
+    """`observe_low_orbit` into zeros."""
     p = parameters[0]
     tables = array_at(p.places.address, p.places.end)
-    n = len(time)
-    out = np.zeros((COLUMNS, n))
-    for i in range(n):
+    for i in range(len(time)):
         t, x, y, z = time[i], states[0, i], states[1, i], states[2, i]
         vx, vy, vz, m = states[3, i], states[4, i], states[5, i], states[6, i]
         r = np.sqrt(x * x + y * y + z * z)
@@ -227,4 +231,4 @@ def observe_low_orbit(time, states, factor, parameters):
                     )
                     out[CURRENT, i], out[POWER, i] = current, voltage * current / p.brake.efficiency
         out[TETHER_X, i], out[TETHER_X + 1, i], out[TETHER_X + 2, i] = sx, sy, sz
-    return out
+    return 0

@@ -12,12 +12,8 @@ from __future__ import annotations
 from typing import NamedTuple, get_type_hints
 
 import numpy as np
-from llvmlite import ir
-from numba.core import types
-from numba.extending import intrinsic
-from numba.np import arrayobj
 
-from sailviz.compiled import layout
+from sailviz.compiled import late, layout
 from sailviz.environment import atmosphere, gravity, grid, ionosphere, solar_level, sun, third_body
 from sailviz.propulsion import electric_sail, plasma_brake, solar_sail, thruster
 from sailviz.steering import attitude
@@ -102,17 +98,5 @@ class Parameters(NamedTuple):
 PARTS: dict[str, type] = get_type_hints(Parameters)
 PARAMETERS = np.dtype([(name, layout(part)) for name, part in PARTS.items()], align=True)
 
-
-@intrinsic
-def array_at(typing, address, length):
-    """The float64 array (length,) at an integer address, in compiled code; `carray` of it would ask for reference
-    counting."""
-
-    def generate(context, builder, signature, arguments):
-        array = context.make_array(signature.return_type)(context, builder)
-        data = builder.inttoptr(arguments[0], ir.DoubleType().as_pointer())
-        itemsize = ir.Constant(ir.IntType(64), 8)
-        arrayobj.populate_array(array, data, [arguments[1]], [itemsize], itemsize, None)
-        return array._getvalue()
-
-    return types.Array(types.float64, 1, "C")(types.int64, types.int64), generate
+array_at = late("sailviz.propagate.intrinsics", "array_at")  # (address or pointer, length) -> the float64 array there
+record_at = late("sailviz.propagate.intrinsics", "record_at")  # (pointer, structured type) -> the record there

@@ -7,11 +7,10 @@ the orbital element that is to change fastest, or from the distance to a target 
 from __future__ import annotations
 
 import numpy as np
-from numba import carray
 
-from sailviz.compiled import STATE, called, compiled, inlined
+from sailviz.compiled import STATE, called, entry, inlined
 from sailviz.propagate.callbacks import Callback, callback
-from sailviz.propagate.parameters import array_at
+from sailviz.propagate.parameters import PARAMETERS, array_at, record_at
 from sailviz.steering import attitude
 from sailviz.steering.optimal import steer, towards_primer
 from sailviz.steering.primers import EDGE, locally_optimal_primer, locally_optimal_readiness, lyapunov_primer, readiness
@@ -53,8 +52,8 @@ def normal(t, x, y, z, vx, vy, vz, p, tables):
 
 def _normal(time, state, parameters, own, number, out):
     """The normal and the throttle."""
-    p = carray(parameters, (1,))[0]
-    y, tables, n = carray(state, (STATE,)), array_at(p.places.address, p.places.end), carray(out, (4,))
+    p = record_at(parameters, PARAMETERS)
+    y, tables, n = array_at(state, STATE), array_at(p.places.address, p.places.end), array_at(out, 4)
     n[0], n[1], n[2], n[3] = normal(time, y[0], y[1], y[2], y[3], y[4], y[5], p, tables)
 
 
@@ -63,13 +62,19 @@ def primer_steering() -> Callback:
     return callback(_normal)
 
 
-@compiled
 def observe_primer(time, states, parameters):
     """Unit primer vectors (n, 3), inertial, and h (n,), the thrust along them as a share of the full one (0 where the
     law wants none), at times (n,) s and states (7, n)."""
+    out, support = np.empty((len(time), 3)), np.empty(len(time))
+    _observe(time, states, parameters, out, support)
+    return out, support
+
+
+@entry("d1 d2 r1 D2 D1", PARAMETERS)
+def _observe(time, states, parameters, out, support):
+    """`observe_primer` without its arrays made."""
     p = parameters[0]
     tables = array_at(p.places.address, p.places.end)
-    out, support = np.empty((len(time), 3)), np.empty(len(time))
     for i in range(len(time)):
         y = states[:, i]
         lx, ly, lz, ready = primer(time[i], y[0], y[1], y[2], y[3], y[4], y[5], p, tables)
@@ -82,4 +87,4 @@ def observe_primer(time, states, parameters):
         c = min(max((out[i, 0] * y[0] + out[i, 1] * y[1] + out[i, 2] * y[2]) / r, -1.0), 1.0)
         h = steer(p.primer.sail, tables, p.places.sail, c, np.sqrt(1.0 - c * c), 0.0)[2]
         support[i] = h * throttle(h, ready, p)
-    return out, support
+    return 0

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sailviz.compiled import compiled, inlined
+from sailviz.compiled import called, inlined
 from sailviz.propagate.callbacks import call
 from sailviz.propagate.dynamics import SIZE
 from sailviz.propagate.events import APSIS, END_OF_USE, RADIUS, STOP, measure, sign_at
@@ -82,11 +82,20 @@ def statistics(s) -> tuple[int, int]:
     return int(s.counter[STEPS]), int(s.counter[REJECTED])
 
 
-def in_pieces(compiled_advance, s, model, arguments, t_end, patience: Patience | None) -> int:
+def in_pieces(compiled_advance, s, model, arguments, t_out, out, numbers, patience: Patience | None) -> int:
     """Let compiled code integrate, piece after piece, until it is done or patience ends. Returns a status.
 
-    compiled_advance : takes s, the parameters, the arguments and the number of steps to try before it pauses.
+    compiled_advance : takes s, the parameters, the arguments, the rows, the numbers (end of the run, tolerance, largest
+    step) and the number of steps to try before it pauses. out : may be part of a larger array.
     """
+    rows = np.ascontiguousarray(out)
+    status = _in_pieces(compiled_advance, s, model, (*arguments, t_out, rows, *numbers), numbers[0], patience)
+    if rows is not out:
+        out[:] = rows
+    return status
+
+
+def _in_pieces(compiled_advance, s, model, arguments, t_end, patience: Patience | None) -> int:
     status = compiled_advance(*s, model.parameters, *arguments, 0 if patience is None else patience.begin_piece())
     if status != PAUSED:
         return int(status)
@@ -165,7 +174,7 @@ def note(s, index, time, w):
     s.counter[EVENTS] = n + 1
 
 
-@compiled
+@called
 def find_events(s, watch, t0, h, x_end, samples, mu, w):
     """Record every event of the step [t0, t0 + h] up to x_end in order of time, looking at that many samples of it.
     Returns x of the first that stops the run or ends the use of the device, else 2, and its index."""

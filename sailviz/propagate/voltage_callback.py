@@ -7,11 +7,10 @@ break; it writes the voltage that it sets into the same line.
 from __future__ import annotations
 
 import numpy as np
-from numba import carray
 
 from sailviz.compiled import STATE
 from sailviz.propagate.callbacks import Callback, callback
-from sailviz.propagate.parameters import array_at
+from sailviz.propagate.parameters import PARAMETERS, array_at, record_at
 from sailviz.propulsion import voltage_control
 
 # Columns of a line: what blows, where the reference flight is, whether the controller acts, whether thrust is wanted
@@ -21,8 +20,8 @@ COLUMNS = 8
 
 def _factor(time, state, parameters, own, index, out):
     """The thrust factor from the break of this index on."""
-    p = carray(parameters, (1,))[0]
-    y, tables, f = carray(state, (STATE,)), array_at(p.places.address, p.places.end), carray(out, (4,))
+    p = record_at(parameters, PARAMETERS)
+    y, tables, f = array_at(state, STATE), array_at(p.places.address, p.places.end), array_at(out, 4)
     places = p.places
     line = places.control + COLUMNS * int(index)
     law = tables[places.control_law : places.control_law + voltage_control.SIZE]

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sailviz.compiled import compiled, inlined
+from sailviz.compiled import entry, inlined
 from sailviz.constants import AU, VACUUM_PERMITTIVITY, WIND_POTENTIAL, WIND_PRESSURE
 from sailviz.propulsion.rows import as_rows
 
@@ -64,9 +64,8 @@ def esail_force(ux, uy, uz, inverse, nx, ny, nz, c, ac, model, pitch_limit):
     return along * ux + across * wx, along * uy + across * wy, along * uz + across * wz
 
 
-@compiled
-def _accelerations(position, normal, ac, model, pitch_limit):
-    out = np.empty_like(position)
+@entry("d2 d2 d i d D2")
+def _accelerations(position, normal, ac, model, pitch_limit, out):
     for i in range(len(position)):
         x, y, z = position[i, 0], position[i, 1], position[i, 2]
         nx, ny, nz = normal[i, 0], normal[i, 1], normal[i, 2]
@@ -74,7 +73,7 @@ def _accelerations(position, normal, ac, model, pitch_limit):
         out[i, 0], out[i, 1], out[i, 2] = esail_force(
             x / r, y / r, z / r, 1 / r, nx, ny, nz, (x * nx + y * ny + z * nz) / r, ac, model, pitch_limit
         )
-    return out
+    return 0
 
 
 def acceleration(
@@ -95,9 +94,9 @@ def acceleration(
     (position, normal), shape = as_rows(position, normal)
     if not on:
         return np.zeros(shape)
-    return _accelerations(
-        position, normal, float(characteristic_acceleration), MODELS[model], float(pitch_limit)
-    ).reshape(shape)
+    out = np.empty_like(position)
+    _accelerations(position, normal, characteristic_acceleration, MODELS[model], pitch_limit, out)
+    return out.reshape(shape)
 
 
 def dimensionless_acceleration(pitch: npt.ArrayLike) -> np.ndarray:

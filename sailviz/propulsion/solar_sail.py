@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from sailviz.compiled import compiled, inlined
+from sailviz.compiled import entry, inlined
 from sailviz.constants import AU, GRAVITY_AT_1_AU, RADIATION_PRESSURE
 from sailviz.propulsion.rows import as_rows
 
@@ -121,9 +121,8 @@ def sail_force(ux, uy, uz, inverse, nx, ny, nz, c, strength, b1, b2, b3):
     )
 
 
-@compiled
-def _accelerations(position, normal, strength, b1, b2, b3):
-    out = np.empty_like(position)
+@entry("d2 d2 d d d d D2")
+def _accelerations(position, normal, strength, b1, b2, b3, out):
     for i in range(len(position)):
         x, y, z = position[i, 0], position[i, 1], position[i, 2]
         nx, ny, nz = normal[i, 0], normal[i, 1], normal[i, 2]
@@ -131,7 +130,7 @@ def _accelerations(position, normal, strength, b1, b2, b3):
         out[i, 0], out[i, 1], out[i, 2] = sail_force(
             x / r, y / r, z / r, 1 / r, nx, ny, nz, (x * nx + y * ny + z * nz) / r, strength, b1, b2, b3
         )
-    return out
+    return 0
 
 
 def acceleration(
@@ -146,4 +145,6 @@ def acceleration(
     film = FILMS[film] if isinstance(film, str) else film
     (position, normal), shape = as_rows(position, normal)
     strength = characteristic_acceleration * AU**2 / film.total
-    return _accelerations(position, normal, strength, film.b1, film.b2, film.b3).reshape(shape)
+    out = np.empty_like(position)
+    _accelerations(position, normal, strength, film.b1, film.b2, film.b3, out)
+    return out.reshape(shape)

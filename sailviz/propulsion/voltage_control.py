@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.compiled import compiled, inlined
+from sailviz.compiled import entry, inlined
 from sailviz.constants import DAY, MU_SUN, WIND_POTENTIAL, WIND_PRESSURE
 
 CONSTANT, PRESSURE, DISTANCE, CONSTANT_POWER = range(4)
@@ -132,20 +132,25 @@ def thrust_factor(voltage, pressure, wind_potential, c):
     return max(0.0, voltage - wind_potential) / (c[NOMINAL] - c[WIND]) * np.sqrt(pressure / c[P_REF])
 
 
-@compiled
 def histories(duration, pressure, density, wind_potential, c):
     """Voltages and thrust factors (n,) of equal steps of `duration` s for laws that see only the wind.
 
     pressure Pa, density 1/m3, wind_potential V: (n,) each; a step's value holds throughout it. An update finds the
     values of the same step, without latency. The distance law needs the flight and belongs in the propagator.
     """
-    n = len(pressure)
-    volts, factors = np.empty(n), np.empty(n)
+    volts, factors = np.empty(len(pressure)), np.empty(len(pressure))
+    _histories(duration, pressure, density, wind_potential, c, volts, factors)
+    return volts, factors
+
+
+@entry("d d1 d1 d1 d1 D1 D1")
+def _histories(duration, pressure, density, wind_potential, c, volts, factors):
+    """`histories` without its arrays made."""
     every = max(1, round(c[INTERVAL] / duration))
     held = np.nan
-    for i in range(n):
+    for i in range(len(pressure)):
         if i % every == 0:
             held = voltage(held, pressure[i], density[i], 1.0, 0.0, 1.0, 0.0, c)
         volts[i] = held
         factors[i] = thrust_factor(held, pressure[i], wind_potential[i], c)
-    return volts, factors
+    return 0

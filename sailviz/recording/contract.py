@@ -12,7 +12,11 @@
               that many numbers, unit in each name; kept_position_m (3 per flight drawn); one_NAME of the first flight;
               saturated and histogram, shares. /ensemble/NAME/facts, static: levels, ends of the flights, words
 /events       name, time_s, state (position m, velocity m/s, mass kg: 7), at the first row not before the event
-/scene        static: what the run was made from and how far it got; gaps_s (start, end) of each span without data
+/scene        static: what the run was made from and how far it got; gaps_s (start, end) of each span without data;
+              `flights`, the names of all, where several were recorded together
+/flight/NAME  of each flight beside the first of those: the same entities below it, /flight/NAME/state and so on, with
+              the numbers of its own rows, on the first one's clock; and, of the first as well, /flight/NAME/scene, with
+              its `name` and `start_s`, when its own time is 0 on that clock
 
 Each is one archetype `sailviz.<Entity>` on the timelines step (the row's number), sim_time and, with an epoch, utc.
 """
@@ -20,7 +24,7 @@ Each is one archetype `sailviz.<Entity>` on the timelines step (the row's number
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -36,6 +40,11 @@ CONTRACT = "sailviz/1"
 def archetype(entity: str) -> str:
     """Name of the archetype of an entity: /state -> sailviz.State, /ensemble/calm -> sailviz.Ensemble."""
     return "sailviz." + entity.strip("/").split("/")[0].capitalize()
+
+
+def flight_path(name: str) -> str:
+    """Above the entities of one of several flights."""
+    return f"/flight/{word(name)}"
 
 
 def tables(run: Run) -> dict[str, dict[str, np.ndarray]]:
@@ -163,8 +172,18 @@ def event_columns(events: list[Event]) -> Iterable[rr.ComponentColumn]:
     )
 
 
-def scene(setting: Setting, *, rows: int, complete: bool, ended: str) -> rr.DynamicArchetype:
-    """The static entity /scene."""
+def scene(
+    setting: Setting,
+    *,
+    rows: int,
+    complete: bool,
+    ended: str,
+    flights: Sequence[str] = (),
+    name: str = "",
+    start: float = 0.0,
+) -> rr.DynamicArchetype:
+    """The static entity /scene, with the names of flights recorded together; or of one of those /flight/NAME/scene,
+    with its name and the s of the first one's clock at its own time 0."""
     craft = setting.craft
     sizes = {"craft_side_m": craft.side, "craft_tethers": craft.tethers, "craft_tether_length_m": craft.tether_length}
     values = {
@@ -180,12 +199,15 @@ def scene(setting: Setting, *, rows: int, complete: bool, ended: str) -> rr.Dyna
         "body_mu_m3_s2": float(setting.body.mu),
         "body_radius_m": float(setting.body.radius),
         "craft_kind": craft.kind,
-        **{name: float(size) for name, size in sizes.items() if size is not None},
+        **{key: float(size) for key, size in sizes.items() if size is not None},
         "rows": int(rows),
         "complete": bool(complete),
         "ended": ended,
+        **({"name": name, "start_s": float(start)} if name else {}),
     }
-    components = {name: pa.array([value]) for name, value in values.items()}
+    components = {key: pa.array([value]) for key, value in values.items()}
+    if flights:
+        components["flights"] = pa.array(list(flights))
     if setting.gaps:
         components["gaps_s"] = arrow_column(np.array(setting.gaps))
     return rr.DynamicArchetype(archetype("/scene"), components=components)

@@ -1,7 +1,8 @@
 """Recordings as tables for other programs: CSV, Parquet, numpy archives, and orbit ephemeris messages.
 
 csv, parquet   one table: step, time_s, utc where there is an epoch, then entity.column_unit[.component]; events in a
-               second file beside it, NAME.events.csv, and each ensemble in NAME.ensemble.OWN_NAME.csv
+               second file beside it, NAME.events.csv, and each ensemble in NAME.ensemble.OWN_NAME.csv; each flight
+               beside the first, on its own clock, in NAME.flight.OWN_NAME.csv
 npz            every column under its own key, e.g. state.position_m (n, 3), events.time_s, scene.identity
 oem            position and velocity, CCSDS 502.0-B, in EME2000; after a gap and where the velocity jumps a new segment
 """
@@ -18,7 +19,7 @@ import pyarrow as pa
 
 from sailviz import files
 from sailviz.errors import RecordingError
-from sailviz.recording.comparison.tables import Evidence, Source, Table, evidence
+from sailviz.recording.comparison.tables import Evidence, Source, Table, evidence, flight_of
 from sailviz.recording.reader import EventRow, FilePath
 
 FORMATS = ("csv", "parquet", "npz", "oem")
@@ -82,18 +83,32 @@ def _write_tables(data: Evidence, path: Path, to: str, wanted: Sequence[str]) ->
     meta = {b"sailviz": json.dumps(data.facts, sort_keys=True).encode()}
     if not entities and events is not None:
         return (written_whole(path, lambda part: _write_arrow(part, events.replace_schema_metadata(meta), to)),)
-    apart = [] if wanted else [name for name in entities if name.startswith("/ensemble/")]  # on rows of their own
-    table = flat_table(data, [name for name in entities if name not in apart]).replace_schema_metadata(meta)
+    apart = {} if wanted else _on_other_rows(entities)
+    others = {name for names in apart.values() for name in names}
+    table = flat_table(data, [name for name in entities if name not in others]).replace_schema_metadata(meta)
     alone = path.exists() and not path.is_file()  # a device or a pipe: nothing lies beside it
     written = [written_whole(path, lambda part: _write_arrow(part, table, to))]
-    for name in [] if alone else apart:
-        beside = path.with_name(f"{path.stem}{name.replace('/', '.')}{path.suffix}")
-        own = flat_table(data, [name]).replace_schema_metadata(meta)
+    for top, names in {} if alone else apart.items():
+        beside = path.with_name(f"{path.stem}{top.replace('/', '.')}{path.suffix}")
+        own = flat_table(data, names).replace_schema_metadata(meta)
         written.append(written_whole(beside, partial(_write_arrow, table=own, to=to)))
     if events is not None and not alone:
         beside = path.with_name(f"{path.stem}.events{path.suffix}")
         written.append(written_whole(beside, lambda part: _write_arrow(part, events, to)))
     return tuple(written)
+
+
+def _on_other_rows(entities: Sequence[str]) -> dict[str, list[str]]:
+    """Entities that do not stand on the rows of the first flight, by what their file is called after: each ensemble,
+    each flight beside the first, and the events of that."""
+    found: dict[str, list[str]] = {}
+    for name in entities:
+        flight = flight_of(name)
+        if name.startswith("/ensemble/") or name == f"{flight}/events":
+            found[name] = [name]
+        elif flight:
+            found.setdefault(flight, []).append(name)
+    return found
 
 
 def _wanted_events(data: Evidence, wanted: Sequence[str]) -> pa.Table | None:
@@ -121,6 +136,8 @@ def flat_table(data: Evidence, entities: Sequence[str]) -> pa.Table:
     """Entities side by side, one column per number. RecordingError where they do not stand on the same rows."""
     columns: dict[str, pa.Array] = {}
     first: tuple[Table, str] | None = None
+    tops = {flight_of(entity) for entity in entities}
+    top = tops.pop() if len(tops) == 1 else ""  # of the flight, where all is one flight's
     for entity in entities:
         table = data.table(entity)
         if first is None:
@@ -128,13 +145,15 @@ def flat_table(data: Evidence, entities: Sequence[str]) -> pa.Table:
             columns["step"] = pa.array(table.step)
             columns["time_s"] = pa.array(np.asarray(table.time, float))
             if data.epoch is not None:
-                ns = np.round(table.time * 1e9).astype(np.int64).astype("timedelta64[ns]")
+                since = table.time + data.starts.get(flight_of(entity), 0.0)
+                ns = np.round(since * 1e9).astype(np.int64).astype("timedelta64[ns]")
                 columns["utc"] = pa.array(data.epoch + ns)
         elif not np.array_equal(first[0].step, table.step):
             raise RecordingError(f"{entity} stands on other rows than {first[1]}: export it alone, or all to npz")
         for name, values in table.columns.items():
             if name != "time_s":
-                columns.update(_components(f"{entity.strip('/')}.{name}", name, values, data.label))
+                key = f"{entity.removeprefix(top).strip('/')}.{name}"
+                columns.update(_components(key, name, values, data.label))
     return pa.table(columns)
 
 
@@ -175,7 +194,7 @@ def arrays(data: Evidence, wanted: Sequence[str] = (), rows: np.ndarray | None =
     steps = data.table("/state").step if "/state" in data.entities else None
     for entity in [name for name in wanted or data.entities if name != "/events"]:
         table, key = data.table(entity), entity.strip("/")
-        same = steps is not None and np.array_equal(table.step, steps)
+        same = steps is not None and not flight_of(entity) and np.array_equal(table.step, steps)
         pick = _picked(rows, same, len(table))
         if entity == "/state" or not same or wanted:
             found[f"{key}.step"] = np.asarray(table.step)[pick]
@@ -234,6 +253,10 @@ def to_oem(source: Source | Evidence, path: FilePath, frame: str = "") -> Path:
     from sailviz.run.oem_writer import plain, write_oem
 
     data = evidence(source)
+    if data.starts:
+        raise RecordingError(
+            f"{data.label} holds {len(data.starts)} flights, and an OEM one: export the recording of each by itself"
+        )
     if "/state" not in data.entities:
         raise RecordingError(f"{data.label} has no /state, so no position and velocity to write")
     if data.epoch is None:

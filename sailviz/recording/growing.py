@@ -15,6 +15,7 @@ import rerun as rr
 from sailviz.errors import OutputError, PropagationError, RecordingError, TimeLimitError
 from sailviz.files import Output, lacking, reason
 from sailviz.recording import checksums, contract, timelines
+from sailviz.recording.companions import Companion, Overlay
 from sailviz.recording.drain import Drain
 from sailviz.recording.drawing.drawing import Drawing
 from sailviz.recording.framing import framing
@@ -25,8 +26,9 @@ from sailviz.run.arrays import Event, Run
 class GrowingRecording:
     """The stream of a recording, from its first block on. `last` is the last row that was written."""
 
-    def __init__(self, first: Run, sinks: Sequence[Opened]):
+    def __init__(self, first: Run, sinks: Sequence[Opened], overlay: Overlay | None = None):
         self.rows = 0
+        self._overlay = overlay
         self.last: Run | None = None
         self._sinks = sinks
         self._setting = setting = first.setting
@@ -40,7 +42,7 @@ class GrowingRecording:
         self._attached = attach(self.stream, sinks)
         self.stream.send_recording_name(setting.title)
         try:
-            self._drawing = Drawing(self.stream, first)
+            self._drawing = Drawing(self.stream, first, overlay)
         except BaseException:
             self.abandon()
             raise
@@ -87,6 +89,8 @@ class GrowingRecording:
         if note:
             self._events.append(event_at(last, note))
         self._write_events(self._events, np.full(len(self._events), self.rows - 1))
+        for companion in self._overlay.companions if self._overlay else ():
+            self._write_companion(companion)
         self._drawing.finish(last)
         self._write_scene(complete)
         self._write_sums()
@@ -171,9 +175,40 @@ class GrowingRecording:
         self.stream.send_columns("/events", index, contract.event_columns(events))
         self._drawing.add_events(events, index)
 
+    def _write_companion(self, companion: Companion) -> None:
+        """The numbers of a flight beside the first: all of its rows, on the first one's clock."""
+        run, shown, top = companion.run, companion.shown, contract.flight_path(companion.name)
+        index = timelines.time_columns(shown.setting, np.arange(len(run)), shown.time)
+        for entity, table in contract.tables(run).items():
+            if table:
+                self.stream.send_columns(top + entity, index, contract.columns(entity, table))
+        if not run.events:
+            return
+        own = sorted(run.events, key=lambda event: event.time)
+        times = np.array([event.time for event in own])
+        rows = np.minimum(np.searchsorted(run.time, times, side="left"), len(run) - 1)
+        index = timelines.time_columns(shown.setting, rows, times + companion.start)
+        self.stream.send_columns(f"{top}/events", index, contract.event_columns(own))
+        told = [
+            replace(event, name=f"{companion.name}: {event.name}", time=event.time + companion.start) for event in own
+        ]
+        self._drawing.add_events(told, index, beside=True)
+
     def _write_scene(self, complete: bool) -> None:
-        scene = contract.scene(self._setting, rows=self.rows, complete=complete, ended=self._ended)
-        self.stream.log("/scene", scene, static=True)
+        overlay, rows, ended = self._overlay, self.rows, self._ended
+        names = overlay.names if overlay else ()
+        whole = contract.scene(self._setting, rows=rows, complete=complete, ended=ended, flights=names)
+        self.stream.log("/scene", whole, static=True)
+        if overlay is None:
+            return
+        own = contract.scene(overlay.own, rows=rows, complete=complete, ended=ended, name=overlay.name)
+        self.stream.log(f"{contract.flight_path(overlay.name)}/scene", own, static=True)
+        for each in overlay.companions:
+            run, start = each.run, each.start
+            own = contract.scene(
+                run.setting, rows=len(run), complete=True, ended=run.ended, name=each.name, start=start
+            )
+            self.stream.log(f"{contract.flight_path(each.name)}/scene", own, static=True)
 
 
 def check_whole(part: Path, file: Output, served: bool) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import json
 import os
+import re
 import tempfile
 import textwrap
 import warnings
@@ -26,6 +27,7 @@ from sailviz.recording.probe import probe
 from sailviz.recording.sinks import Memory
 
 PICTURE = ("world", "sail", "plots", "phase", "about", "log", "arrival", "histogram")  # what is there for the eye
+FLIGHT_SCENE = re.compile("/flight/[^/]+/scene")
 EMPTY = "holds no recording"
 FilePath = str | os.PathLike[str]
 TERMINAL = 110  # characters in a line
@@ -202,6 +204,18 @@ class Recording(Mapping[str, Entity]):
         return [EventRow(str(names[i]), float(times[i]), states[i], int(steps[i])) for i in order]
 
     @property
+    def flights(self) -> list[FlightFacts]:
+        """Those that were recorded together, the first one first; none of a recording of one."""
+        scene: Mapping[str, np.ndarray] = self.get("/scene", {})
+        order = [str(name) for name in np.ravel(scene["flights"])] if self.contract and "flights" in scene else []
+        found = []
+        for path in dict.fromkeys(name.rsplit("/", 1)[0] for name in self.entities if FLIGHT_SCENE.fullmatch(name)):
+            facts = self[f"{path}/scene"]
+            name, title, identity = (str(facts[key][0]) for key in ("name", "title", "identity"))
+            found.append(FlightFacts(path, name, title, identity, float(facts["start_s"][0]), int(facts["rows"][0])))
+        return sorted(found, key=lambda flight: order.index(flight.name) if flight.name in order else len(order))
+
+    @property
     def gaps(self) -> np.ndarray:
         """(k, 2) s, starts and ends of the spans without data."""
         scene: Mapping[str, np.ndarray] = self.get("/scene", {})
@@ -288,6 +302,19 @@ class Recording(Mapping[str, Entity]):
             words = (str(error).splitlines() or [""])[0]
             raise DamagedError(f"{self.label} is damaged and cannot be read: {words}") from None
         return reader
+
+
+@dataclass(frozen=True)
+class FlightFacts:
+    """One of several flights that were recorded together. path : above its entities, but that the first one's numbers
+    stand at the top; start : s of the first one's clock at its own time 0."""
+
+    path: str
+    name: str
+    title: str
+    identity: str
+    start: float
+    rows: int
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from rerun.error_utils import catch_and_log_exceptions
 
 from sailviz.errors import RecordingError
 from sailviz.recording import timelines
+from sailviz.recording.companions import Overlay
 from sailviz.recording.drain import Drain
 from sailviz.recording.growing import GrowingRecording, why
 from sailviz.recording.sinks import Sink, discard, resolve
@@ -66,6 +67,11 @@ def record(run: Run | Iterable[Run], sink: Sink, *more_sinks: Sink) -> Recorded:
         for block in [run] if isinstance(run, Run) else run:
             recorder.add(block)
         recorded = recorder.finish()
+    return served(recorded)
+
+
+def served(recorded: Recorded) -> Recorded:
+    """A recording for the browser is served until Ctrl-C; every other one is there at once."""
     if recorded.url:
         print(f"{recorded.url} shows the recording until Ctrl-C", file=sys.stderr)
         recorded.serve()
@@ -80,9 +86,11 @@ class Recorder:
     complete = False, and the exception goes on. When it raises earlier, nothing is left behind.
     """
 
-    def __init__(self, *sinks: Sink):
-        """sinks : as in `record`. Raises RecordingError where one cannot be written."""
+    def __init__(self, *sinks: Sink, overlay: Overlay | None = None):
+        """sinks : as in `record`; overlay : the flights that are drawn beside this one. Raises RecordingError where a
+        sink cannot be written."""
         self._sinks = resolve(sinks)
+        self._overlay = overlay
         self._growing: GrowingRecording | None = None
         self._seconds = 0.0
         self.recorded: Recorded | None = None
@@ -133,7 +141,7 @@ class Recorder:
                 piece = timelines.take(run, slice(start, start + BLOCK))
                 piece = replace(piece, first=run.first + start, events=run.events if start == 0 else ())
                 if self._growing is None:
-                    self._growing = GrowingRecording(piece, self._sinks)
+                    self._growing = GrowingRecording(piece, self._sinks, self._overlay)
                 self._growing.add(piece)
         self._seconds += clock.perf_counter() - started
 

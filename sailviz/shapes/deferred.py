@@ -1,7 +1,7 @@
 """Modules that a library names when it is imported, loaded only when one of their names is first used.
 
 Of the time that `import trimesh` takes, four fifths go into parts of scipy that none of our shapes need: convex hulls,
-minimizers, searches for neighbours. They cost as much as a whole flight.
+minimizers, searches for neighbours, sparse matrices. They cost as much as a whole flight.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from sailviz.shapes.deferred import deferred
 
-with deferred("trimesh", "scipy.spatial", "scipy.optimize", "scipy.ndimage"):
+with deferred("trimesh", "scipy.spatial", "scipy.optimize", "scipy.ndimage", "scipy.sparse"):
     import trimesh
     from trimesh import Trimesh, creation
 
@@ -35,6 +35,7 @@ __all__ = [
     "trimesh",
     "tube",
     "turned",
+    "vertex_normals",
 ]
 
 
@@ -64,6 +65,18 @@ def scaled(mesh: Trimesh, factor: float) -> Trimesh:
     copy = mesh.copy()
     copy.apply_scale(factor)
     return copy
+
+
+def vertex_normals(mesh: Trimesh) -> np.ndarray:
+    """Unit normals (n, 3) at the vertices: those of the faces around, weighted by their angles there.
+
+    The numbers of trimesh's own `vertex_normals`, to the last bit, without the sparse matrices that it loads for them.
+    """
+    good = (mesh.face_normals**2).sum(axis=1) > 0.5  # the others are of faces without an area
+    corners = mesh.faces[good].ravel()
+    pulls = (mesh.face_angles[good][:, :, None] * mesh.face_normals[good][:, None, :]).reshape(-1, 3)
+    sums = [np.bincount(corners, pulls[:, axis], len(mesh.vertices)) for axis in range(3)]
+    return np.asarray(trimesh.util.unitize(np.stack(sums, axis=1)))
 
 
 def flat_sided(mesh: Trimesh) -> Trimesh:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import platform
+from importlib.metadata import version
 from typing import Any
 
-import numba
 import numpy as np
 
 import sailviz
@@ -35,7 +35,7 @@ def setting_of(p: Plan, planets, rows, ensembles=(), measure=True) -> Setting:
     duration = scene.propagation.duration
     return Setting(
         title=scene.title,
-        family=scene.family or _family(scene),
+        family=family_of(scene),
         about=scene.about,
         look_for=tuple(scene.look_for),
         thesis=scene.thesis,
@@ -52,7 +52,7 @@ def setting_of(p: Plan, planets, rows, ensembles=(), measure=True) -> Setting:
             "sailviz": sailviz.__version__,
             "python": platform.python_version(),
             "numpy": np.__version__,
-            "numba": numba.__version__,
+            "numba": version("numba"),
         },
         accuracy=accuracy_in_words(p, measure),
         identity=p.identity,
@@ -63,7 +63,10 @@ def setting_of(p: Plan, planets, rows, ensembles=(), measure=True) -> Setting:
     )
 
 
-def _family(scene) -> str:
+def family_of(scene) -> str:
+    """The family in whose way a scene is drawn: its own word, or what its sections suggest."""
+    if scene.family:
+        return str(scene.family)
     if scene.body == "earth":
         return "deorbit"
     if scene.environment.solar_wind.kind != "steady" or scene.ensemble or scene.chaos:

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sailviz.compiled import compiled, inlined
+from sailviz.compiled import entry, inlined
 from sailviz.propulsion.devices import SOLAR_SAIL, sail
 from sailviz.propulsion.electric_sail import FINAL, ORIGINAL, POLYNOMIAL
 from sailviz.propulsion.solar_sail import FILMS, Film
@@ -293,7 +293,7 @@ def towards_primer_analytic(p, at, ux, uy, uz, lx, ly, lz):
     return along * ux + across * tx, along * uy + across * ty, along * uz + across * tz, 1.0 if on else 0.0
 
 
-@compiled
+@entry("d1 i d1 i d D1 D1")
 def _pitches(primer, device, p, analytic, eps, pitch, h):
     for i in range(len(primer)):
         c, s = np.cos(primer[i]), abs(np.sin(primer[i]))
@@ -304,6 +304,7 @@ def _pitches(primer, device, p, analytic, eps, pitch, h):
         else:
             along, across, h[i], _, _ = steer(device, p, 0, c, s, eps)
         pitch[i] = np.copysign(np.arctan2(across, along), np.sin(primer[i]))
+    return 0
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ from sailviz.ephemeris import planet_orbit
 from sailviz.figures import FigureError, draw_recording, page
 from sailviz.figures.recorded import curves_page, orbit_page
 from sailviz.figures.recorded_curves import BINS, broken, curve_of, telling, thinned
-from sailviz.figures.recorded_run import run_of
 from sailviz.recording import read, record_trajectory
 from sailviz.recording.drawing import style as colors
+from sailviz.recording.recorded_run import run_of
 
 DAY, MU_SUN = 86400.0, 1.32712440018e20
 

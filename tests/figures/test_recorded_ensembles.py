@@ -13,9 +13,9 @@ from sailviz.figures import draw_recording, page
 from sailviz.figures.recorded import curves_page, ensembles_page
 from sailviz.figures.recorded_curves import curve_of
 from sailviz.figures.recorded_ensembles import MILLI_AU, ensembles_of
-from sailviz.figures.recorded_run import run_of
 from sailviz.figures.recorded_swings import bands_of, revolutions
 from sailviz.recording import read, record, record_trajectory
+from sailviz.recording.recorded_run import run_of
 from sailviz.simulation.loop import simulate
 
 SCENE = {

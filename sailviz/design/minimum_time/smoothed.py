@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sailviz.compiled import compiled, inlined
+from sailviz.compiled import entry, inlined
 
 R, THETA, U, V, LAM_R, LAM_U, LAM_V = range(7)  # what stands where in a state: r, angle, speeds and their costates
 SIZE = 7
@@ -51,7 +51,7 @@ def _rates(r, u, v, p, q, s, radial, transverse):
     )
 
 
-@compiled
+@entry("D1 d i d d D1 D1 i i")
 def _shoot(y, time, steps, a_c, width, pitch, throttle, first, last):
     """Advance y (7,), laid out as above, by classical Runge-Kutta steps from the first to before the last, filling
     their pitch and throttle (steps,)."""
@@ -73,6 +73,7 @@ def _shoot(y, time, steps, a_c, width, pitch, throttle, first, last):
             k = _rates(r, u, v, p + x * k[LAM_R], q + x * k[LAM_U], s + x * k[LAM_V], f, g)
             for j in range(SIZE):
                 y[j] += h / 6.0 * weight * k[j]
+    return 0
 
 
 def smoothed_transfer(

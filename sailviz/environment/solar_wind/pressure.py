@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sailviz.compiled import compiled
+from sailviz.compiled import entry
 from sailviz.constants import ELEMENTARY_CHARGE, MASS_PROTON, WIND_POTENTIAL, YEAR
 from sailviz.environment.solar_wind.laws import Gamma, Law
 from sailviz.environment.solar_wind.series import Series
@@ -116,11 +116,12 @@ def relaxing_normals(times, random, correlation_time):
     return z
 
 
-@compiled
+@entry("D1 d1")
 def _relax(z, memory):
     """z in place, from independent normal numbers to z_i = rho_i z_(i-1) + sqrt(1 - rho_i^2) N."""
     for i in range(1, len(z)):
         z[i] = memory[i] * z[i - 1] + np.sqrt(1.0 - memory[i] * memory[i]) * z[i]
+    return 0
 
 
 def phase_factor(phase):

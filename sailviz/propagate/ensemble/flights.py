@@ -16,10 +16,9 @@ from queue import SimpleQueue
 from threading import Event
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 
-from sailviz.compiled import _OPTIONS, compiled, inlined
+from sailviz.compiled import compiled, inlined, summing
 from sailviz.propagate.ensemble.draws import (
     DRAWN,
     REPLAYED,
@@ -91,12 +90,7 @@ class Ensemble(NamedTuple):
     mean: np.ndarray  # (flights, 3) averages over time: factor, voltage, share of time at the largest voltage
 
 
-# sums over lanes may be taken in any order that the compiler fixes: the order is the same in every run
-_REORDERED: dict[str, Any] = {**_OPTIONS, "fastmath": {"contract", "nsz", "reassoc"}, "_nrt": False}
-_summing = numba.njit(forceinline=True, **_REORDERED)
-
-
-@_summing
+@summing
 def _mean_product(a, b, a0, b0, used):
     total = 0.0
     for i in range(used):
@@ -104,7 +98,7 @@ def _mean_product(a, b, a0, b0, used):
     return total
 
 
-@_summing
+@summing
 def _sum(a, a0, used):
     total = 0.0
     for i in range(used):

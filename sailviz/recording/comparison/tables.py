@@ -31,6 +31,7 @@ from sailviz.run.arrays import Run
 Source = Recording | Run | FilePath  # what can be compared and exported
 
 TRUTH = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/approximation")
+FLIGHT = "/flight/"  # above the entities of flights that were recorded together
 APART = (*TRUTH, "/events", "/scene", "/about")  # not part of the picture
 FACTS: tuple[str, ...] = ("title", "family", "body", "body_mu_m3_s2", "craft_kind", "rows", "complete", "ended")
 FACTS += ("identity", "versions", "body_radius_m", "accuracy", "text")
@@ -64,6 +65,7 @@ class Evidence:
     thinned: bool = False  # holds only some of the rows of its run
     views: Counter[tuple[str, str, str]] | None = None  # (kind, name, origin) -> how many
     picture: Callable[[], Iterator[Drawn]] | None = None  # (entity, name -> arrow column), one at a time
+    starts: dict[str, float] = field(default_factory=dict)  # s, by /flight/NAME, of several flights
 
     @property
     def gaps(self) -> tuple[tuple[float, float], ...]:
@@ -147,13 +149,20 @@ def of_recording(recording: Recording, label: str) -> Evidence:
         epoch_of(recording),
         views=views_of(recording),
         picture=(lambda: picture_of(recording)) if sailviz else None,
+        starts={flight.path: flight.start for flight in recording.flights},
     )
 
 
 def truth_of(recording: Recording) -> list[str]:
-    """The entities of the contract that have rows: those of the run, then those of its ensembles."""
+    """The entities of the contract that have rows: those of the run, of its ensembles, of the flights beside it."""
     ensembles = [name for name in recording.entities if name.startswith("/ensemble/") and name.count("/") == 2]
-    return [entity for entity in TRUTH if entity in recording] + ensembles
+    beside = [name for name in recording.entities if name.startswith(FLIGHT) and not name.endswith("/scene")]
+    return [entity for entity in TRUTH if entity in recording] + ensembles + beside
+
+
+def flight_of(entity: str) -> str:
+    """Above the entities of the flight beside the first to which one belongs, e.g. /flight/flat; "" for others."""
+    return "/".join(entity.split("/")[:3]) if entity.startswith(FLIGHT) else ""
 
 
 def of_npz(path: Path, label: str) -> Evidence:
@@ -186,7 +195,10 @@ def of_npz(path: Path, label: str) -> Evidence:
 
     def table(entity: str) -> Table:
         columns = dict(tables[entity])
-        return Table(columns.pop("step", steps), columns.get("time_s", times), columns)
+        own = columns.get("time_s", times)
+        if flight_of(entity) and not entity.endswith(("/state", "/events")):
+            columns.pop("time_s", None)  # it is no column of theirs, and stands there since the rows are the flight's
+        return Table(columns.pop("step", steps), own, columns)
 
     return Evidence(
         label,
@@ -228,8 +240,10 @@ def table_of(recording: Recording, name: str) -> Table:
     steps = table["step"].to_numpy() if "step" in lines else np.arange(len(table))
     if "time_s" in columns:
         return Table(steps, columns["time_s"], columns)
-    if name in TRUTH and "/state" in recording:  # the float64 times, where the rows are those of /state
-        state = Entity("/state", list(recording.chunks("/state")))
+    top = flight_of(name)
+    if name.removeprefix(top) in TRUTH and f"{top}/state" in recording:
+        # the float64 times, where the rows are those of /state
+        state = Entity(f"{top}/state", list(recording.chunks(f"{top}/state")))
         if np.array_equal(state.timeline("step"), steps):
             return Table(steps, state["time_s"], columns)
     line = next((line for line in ("sim_time", *lines) if line in lines), None)
@@ -281,7 +295,7 @@ def picture_of(recording: Recording) -> Iterator[Drawn]:
     """
     apart = {*APART, *truth_of(recording)}
     for name in recording.entities:
-        if name in apart:
+        if name in apart or name.startswith(FLIGHT):
             continue
         batches = [chunk.to_record_batch() for chunk in recording.chunks(name)]
         temporal = [batch for batch in batches if any(line in batch.schema.names for line in TIMELINES)]

@@ -7,6 +7,7 @@ row are in the truth.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -23,8 +24,8 @@ from sailviz.recording.drawing.samples import Frame
 from sailviz.run import gaps
 from sailviz.run.arrays import Run, Setting
 
-PLOT_ROWS = 1600  # a plot is some 560 pixels wide
-FAR_ROWS = 1010  # where rows are far apart on their orbit: there are many curves of years
+PLOT_ROWS = 3000
+FAR_ROWS = 1200  # where rows are far apart on their orbit: there are many curves of years
 MOST_BINS, ROWS_IN_BIN = 400, 8
 BAND_TURNS = 40.0  # revolutions from which a swing within one is a solid block
 SWING = 0.04  # of the whole range, within a bin, from which a curve is a band
@@ -83,6 +84,31 @@ class Rows:
         return np.insert(values, self.holes, np.nan, axis=0)
 
 
+def log_curves(
+    picture: Picture, path: str, rows: Rows, values: np.ndarray, names: Sequence[str], colors: Sequence[Color]
+) -> None:
+    """Write curves, values (n, k), by their names and in their colours, broken where there is no data."""
+    widths = [style.WIDTH["plot"]] * len(names)
+    picture.log_static(path, rr.SeriesLines(names=names, colors=[list(color) for color in colors], widths=widths))
+    scalars = rows.broken(np.where(np.isfinite(values), values, np.nan))
+    picture.log_columns(path, rows.index, rr.Scalars.columns(scalars=scalars))
+
+
+def wanted_place(plot: Plot, asked: Sequence[str]) -> int | None:
+    """The place of a plot among the words of those that a scene asks for."""
+    return next((k for k, word in enumerate(asked) if plot.is_called(word)), None)
+
+
+def hidden(plot: Plot, about: Sequence[str]) -> bool:
+    """Whether a plot is only shown where it is asked for, or where a scene speaks of it."""
+    return plot.rare or (plot.key in RARE and plot.key.split("_")[0] not in about)
+
+
+def worth_of(plot: Plot, values: np.ndarray) -> float:
+    """What the change of the curves of a plot, values (n, k), is worth."""
+    return max((score(values[:, k], plot.natural, plot.bonus) for k in range(values.shape[1])), default=0.0)
+
+
 class Curves:
     """Gathers the curves of a run, and writes those that say something once it is over."""
 
@@ -120,28 +146,42 @@ class Curves:
 
         asked : words of the plots that the scene wants in front; about : words of what it speaks of.
         """
+        rows = self.close(last)
+        found: list[tuple[float, PlotView]] = []
+        for plot in self.plots:
+            values = self.values_of(plot)
+            if plot.handy:
+                plot, values = self._in_handy_unit(plot, values)
+            place = wanted_place(plot, asked)
+            worth = worth_of(plot, values)
+            if place is None and (worth < SHOWN_FROM or hidden(plot, about)):
+                continue
+            view = self._write(plot, rows, values)
+            found.append((worth if place is None else 1e3 - place, view))
+        return [view for _, view in sorted(found, key=lambda pair: -pair[0])]
+
+    def close(self, last: Run) -> Rows:
+        """Take the last row of the run as well -> where the values stand."""
         number, time = np.concatenate(self._number), np.concatenate(self._time)
         if len(number) == 0 or number[-1] != last.first:
             number, time = np.append(number, last.first), np.append(time, last.time)
             for plot in self.plots:
                 self._values[plot.path].append(plot.values(last))
-        rows = Rows.of(self._setting, number, time)
-        found: list[tuple[float, PlotView]] = []
-        for plot in self.plots:
-            values = np.concatenate(self._values[plot.path])
-            if plot.handy:
-                plot, values = self._in_handy_unit(plot, values)
-            worth = max((score(values[:, k], plot.natural, plot.bonus) for k in range(values.shape[1])), default=0.0)
-            place = next((k for k, word in enumerate(asked) if plot.is_called(word)), None)
-            wanted = place is not None
-            rare = plot.rare or (plot.key in RARE and plot.key.split("_")[0] not in about)
-            if rare and not wanted:
-                continue
-            if worth < SHOWN_FROM and not wanted:
-                continue
-            view = self._write(plot, rows, values)
-            found.append((worth if place is None else 1e3 - place, view))
-        return [view for _, view in sorted(found, key=lambda pair: -pair[0])]
+        return Rows.of(self._setting, number, time)
+
+    def values_of(self, plot: Plot) -> np.ndarray:
+        """(n, k) the values of a plot that were gathered."""
+        return np.concatenate(self._values[plot.path])
+
+    def line_of(self, plot: Plot, rows: Rows, size: float) -> tuple[Rows, np.ndarray]:
+        """The first curve of a plot, in units of `size`: where its values stand, and they (n,); where it would be a
+        solid block, its means. rows : those of `close`."""
+        values = self.values_of(plot)[:, 0]
+        reach = values[np.isfinite(values)]
+        if self._banded(plot, [(plot.names[0], 0)], float(np.ptp(reach)) if len(reach) else 0.0):
+            filled, means = self._bands(plot, [(plot.names[0], 0)])
+            return self._bins_at(filled), means[0] / size
+        return rows, values / size
 
     def _in_handy_unit(self, plot: Plot, values: np.ndarray) -> tuple[Plot, np.ndarray]:
         """A plot of pushes, and its values, in the unit in which the largest of the whole run is a handy number."""
@@ -183,21 +223,13 @@ class Curves:
             self._write_bands(plot, kept)
             curves = self._bands(plot, kept)[1]
         else:
-            self._write_lines(plot.path, rows, shown, names, colors)
+            log_curves(self._picture, plot.path, rows, shown, names, colors)
             curves = [shown[:, k] for k in range(len(kept))]
         if plot.from_zero:
             low = min(low, 0.0)
         low, high = nice_range(low, high)
         legend = corner(curves, low, high) if len(kept) > 1 else ""
         return PlotView(plot.title, (f"{plot.path}/**",), low, high, legend)
-
-    def _write_lines(self, path: str, rows: Rows, values: np.ndarray, names: list[str], colors: list[Color]) -> None:
-        lines = rr.SeriesLines(
-            names=names, colors=[list(color) for color in colors], widths=[style.WIDTH["plot"]] * len(names)
-        )
-        self._picture.log_static(path, lines)
-        scalars = rows.broken(np.where(np.isfinite(values), values, np.nan))
-        self._picture.log_columns(path, rows.index, rr.Scalars.columns(scalars=scalars))
 
     def _banded(self, plot: Plot, kept: list[tuple[str, int]], whole: float) -> bool:
         """Whether some curve swings so much within a bin that a line would be a block."""
@@ -216,18 +248,22 @@ class Curves:
             means = [swing.total[filled, k] / swing.count[filled, k] for _, k in kept]
         return filled, means
 
+    def _bins_at(self, filled: np.ndarray) -> Rows:
+        """Where the middles of some bins (m,) stand."""
+        time = self._frame.start + (filled + 0.5) / self._bins * self._setting.duration
+        number = np.round((filled + 0.5) / self._bins * (self._setting.rows - 1)).astype(int)
+        return Rows.of(self._setting, number, time)
+
     def _write_bands(self, plot: Plot, kept: list[tuple[str, int]]) -> None:
         """Each curve as its mean in a band from the least to the largest value of each stretch."""
         swing, picture = self._swings[plot.path], self._picture
         filled, means = self._bands(plot, kept)
-        time = self._frame.start + (filled + 0.5) / self._bins * self._setting.duration
-        number = np.round((filled + 0.5) / self._bins * (self._setting.rows - 1)).astype(int)
-        rows = Rows.of(self._setting, number, time)
+        rows = self._bins_at(filled)
         for place, (name, k) in enumerate(kept):
             low, high = swing.low[filled, k], swing.high[filled, k]
             color, path = list(plot.colors[k]), f"{plot.path}/{place}"
             if plot.swings == "mean":
-                self._write_lines(f"{path}/mean", rows, means[place][:, None], [name], [color])
+                log_curves(self._picture, f"{path}/mean", rows, means[place][:, None], [name], [color])
                 continue
             band = rr.Measurements.from_fields(
                 colors=[style.dim(color, BAND_SHADE)], widths=[0.0], names=[f"{name}, least to largest"]
@@ -236,7 +272,7 @@ class Curves:
             low, high = rows.broken(low), rows.broken(high)
             columns = rr.Measurements.columns(values=0.5 * (low + high), variances=(0.5 * (high - low)) ** 2)
             picture.log_columns(f"{path}/band", rows.index, columns)
-            self._write_lines(f"{path}/mean", rows, means[place][:, None], [f"{name}, mean"], [color])
+            log_curves(self._picture, f"{path}/mean", rows, means[place][:, None], [f"{name}, mean"], [color])
 
 
 @dataclass

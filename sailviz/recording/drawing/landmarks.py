@@ -22,10 +22,9 @@ from sailviz.recording.drawing.story import Story
 from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Event, Reference
 
-MARK, SUN, ENSEMBLE, PLANET, CRAFT, TARGET_RING, RING = range(7)  # what matters more has the lower rank
+MARK, SUN, PLANET, CRAFT, TARGET_RING, RING = range(6)  # what matters more has the lower rank
 MET = 0.12  # relative distance from a planet's orbit within which a flight starts or ends at it
 LARGER = 1.004  # a ring beside the trail: lines on one another tear
-RAISED = 0.085  # of S: events' names stand above their places, planets' hang below
 MOST_EVENTS = 2  # named between start and end
 THERE = 0.02  # of S: closer than this is the same place or the same line
 MEET = 0.06  # of S: start and end closer than this have one name
@@ -93,12 +92,12 @@ def nominal_places(story: Story, rings: dict[str, np.ndarray]) -> dict[str, np.n
     return found
 
 
-def nominal_words(found: Landmarks) -> str:
-    """What a description says about planets whose places are made up; "" where none are."""
+def nominal_words(found: Landmarks, whose: str = "this flight") -> str:
+    """What a description says about planets whose places are made up; "" where none are. whose : flight they suit."""
     if not found.nominal:
         return ""
     names = " and ".join(name for name in found.nominal if name in found.places)
-    return f"No date is given: {names} placed where this flight would meet {'it' if ' and ' not in names else 'them'}."
+    return f"No date is given: {names} placed where {whose} would meet {'it' if ' and ' not in names else 'them'}."
 
 
 def log_landmarks(picture: Picture, story: Story, found: Landmarks, eye: np.ndarray, names: Names) -> None:
@@ -213,7 +212,7 @@ def log_marks(picture: Picture, story: Story, eye: np.ndarray, names: Names) -> 
         marks = marks[:1]
     elif np.linalg.norm(story.position[-1] - story.position[0]) < MEET * story.reach:
         marks = [*marks[:-1], (f"{marks[-1][0]}: where it began", story.position[-1])][1:]
-    rise = np.array([0.0, 0.0, RAISED * story.reach / max(np.sqrt(1 - eye[2] ** 2), 0.3)])
+    rise = np.array([0.0, 0.0, style.RAISED * story.reach / max(np.sqrt(1 - eye[2] ** 2), 0.3)])
     dots = np.array([place for _, place in marks])
     picture.log_static("/world/marks", rr.Points3D(f4(dots), radii=points(style.MARK_DOT), colors=[style.CRAFT]))
     for number, (words, place) in enumerate(marks):

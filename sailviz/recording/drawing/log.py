@@ -11,7 +11,7 @@ import rerun as rr
 from numpy.typing import ArrayLike
 
 from sailviz.recording.drawing.style import ANCHOR, points, rgba
-from sailviz.shapes.primitives import Trimesh
+from sailviz.shapes.primitives import Trimesh, vertex_normals
 
 Color = Sequence[int]  # red, green, blue and perhaps alpha, 0 to 255
 Index = list[rr.TimeColumn]  # the timelines of some rows
@@ -49,7 +49,7 @@ class Picture:
 
     def log_mesh(self, path: str, mesh: Trimesh, color: Color, shaded: bool = True, side: str | None = None) -> None:
         """A mesh of one colour, `side` "front" or "back" alone if given. Unshaded is flat: what glows, and air."""
-        more: dict[str, Any] = {"vertex_normals": f4(mesh.vertex_normals)} if shaded else {}
+        more: dict[str, Any] = {"vertex_normals": f4(vertex_normals(mesh))} if shaded else {}
         if side:
             more["face_rendering"] = side
         faces = np.ascontiguousarray(mesh.faces, np.uint32)
@@ -98,15 +98,9 @@ class Picture:
         quaternion: ArrayLike | None = None,
         scale: ArrayLike | None = None,
     ) -> None:
-        """translation (n, 3), quaternion (n, 4) xyzw, scale (n, 3); what never changes stands there once."""
+        """translation (n, 3), quaternion (n, 4) xyzw, scale (n, 3)."""
         given = {"translation": translation, "quaternion": quaternion, "scale": scale}
         values: dict[str, Any] = {name: f4(value) for name, value in given.items() if value is not None}
-        if all(len(value) and np.all(value == value[0]) for value in values.values()):
-            still: dict[str, Any] = {name: value[0] for name, value in values.items()}
-            if quaternion is not None:
-                still["quaternion"] = rr.Quaternion(xyzw=still["quaternion"])
-            self.log_static(path, rr.Transform3D(**still))
-            return
         self.log_columns(path, index, rr.Transform3D.columns(**values))
 
     def log_arrow_style(self, path: str, color: Color, width: float) -> None:

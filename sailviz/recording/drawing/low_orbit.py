@@ -6,6 +6,7 @@ craft and its tether are drawn far too large, which the view's name says; orbits
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,9 +16,10 @@ from sailviz.frames import body_axes, quaternion, to_frame, unit
 from sailviz.recording.drawing import cameras, style
 from sailviz.recording.drawing.cameras import Camera
 from sailviz.recording.drawing.craft import Glow, log_stowing, log_tether
+from sailviz.recording.drawing.flights import Flight
 from sailviz.recording.drawing.layout import ALL, Space, Span
-from sailviz.recording.drawing.log import Picture, f4
-from sailviz.recording.drawing.names import Names
+from sailviz.recording.drawing.log import Color, Picture, f4
+from sailviz.recording.drawing.low_flights import in_front, log_low_flights, season
 from sailviz.recording.drawing.orbit_plane import OrbitPlane, shell_words
 from sailviz.recording.drawing.phrases import push_words
 from sailviz.recording.drawing.planet import Planet
@@ -28,7 +30,6 @@ from sailviz.recording.drawing.style import points
 from sailviz.shapes import sails
 from sailviz.shapes.primitives import circle
 
-GROUND, DRAG, FLIGHT = range(3)  # names; what matters more has the lower rank
 LADDER = 12  # orbits that show a descent
 SATELLITE, SMALL = 0.062, 0.05  # size of a satellite with a tether, and with air alone, in radii of the planet
 FILM = 0.075  # side of a drag sail
@@ -36,7 +37,6 @@ TETHER, CLEARANCE = 0.075, 0.75  # length of a tether, and how much of the altit
 LEAST_TETHER = 0.004
 MANY = 7  # arrows along a tether
 LEAST, MORE = 0.035, 0.075  # length of a drag arrow, and what the root of its share of the largest adds
-UNBRAKED = 0.075  # behind the arrows, or the craft, where the drag is told
 TAIL = 0.9  # rad of the orbit behind the craft that are bright
 BESIDE = 1.0004  # radii: the tail lies over the ring
 EYE, TARGET = np.array([0.105, -0.085, 0.315]), (-0.066, -0.010, 0.0)  # riding along, radii of the planet
@@ -47,21 +47,25 @@ CIRCLE = 241  # points of the ring
 DESCENT = "Descent (orbits in one plane, to scale)"
 
 
-def log_low_orbit(picture: Picture, story: Story) -> tuple[list[Space], Space, dict[str, Span]]:
-    """Write /world -> the tabs of the main view, the globe, and the spans that they show."""
+def log_low_orbit(
+    picture: Picture, story: Story, flights: Sequence[Flight] = ()
+) -> tuple[list[Space], Space, dict[str, Span]]:
+    """Write /world -> the tabs of the main view, the globe, and the spans that they show. flights : all that are drawn
+    together, the first one first; then what compares them is in front, and old orbits are left out."""
     run = story.samples.run
     picture.log_static("/world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
     log_stars(picture, "/world/stars", style.STARS_RADIUS * story.reach)
     Planet(picture, story.setting, "Sun" in run.bodies).add(story.samples)
-    colors = descent_colors(story)
-    log_orbit(picture, story, colors)
-    plane = log_plane(picture, story, colors)
-    riding, names = riding_along(story), Names(story)
-    log_craft(picture, story, names)
-    names.write(picture, riding.camera)
+    log_orbit(picture, story, *orbit_colors(story, flights))
+    plane = log_plane(picture, story, flights)
+    log_craft(picture, story)
     spans: dict[str, Span] = dict.fromkeys(("/world/plane/ladder", "/world/plane/rungs"), ALL) if plane else {}
-    globe = log_globe_eye(picture, story)
-    return [riding, from_afar(globe), *(descent(story) if plane else [])], globe, spans
+    globe = log_globe_eye(picture, story, flights[0].color if flights else style.CRAFT)
+    tabs = [riding_along(story), from_afar(globe), *(descent(story) if plane else [])]
+    if flights:
+        log_low_flights(picture, flights, np.array(globe.camera.position), plane)
+        return tabs[::-1], globe, {}
+    return tabs, globe, spans
 
 
 def orbit_words(story: Story) -> list[str]:
@@ -83,10 +87,18 @@ def descent_colors(story: Story, rows: np.ndarray | slice = slice(None), factor:
     return style.ramp(np.clip((altitude[0] - altitude[rows]) / fall, 0, 1), style.ALTITUDE_RAMP, factor)
 
 
-def log_orbit(picture: Picture, story: Story, colors: np.ndarray) -> None:
+def orbit_colors(story: Story, flights: Sequence[Flight]) -> tuple[np.ndarray, np.ndarray]:
+    """Colours (n,) of the bright and of the dim part of the orbit: by altitude, or among flights the flight's own."""
+    if not flights:
+        return descent_colors(story), descent_colors(story, factor=0.8)
+    own = flights[0].color
+    bright, dim = (np.full(len(story.time), style.rgba(color), np.uint32) for color in (own, style.dim(own, 0.8)))
+    return bright, dim
+
+
+def log_orbit(picture: Picture, story: Story, colors: np.ndarray, faint: np.ndarray) -> None:
     """The orbit of the moment as a ring, bright behind the craft."""
     samples = story.samples
-    faint = descent_colors(story, factor=0.8)
     line = rr.LineStrips3D.from_fields(strips=[f4(circle(CIRCLE))], radii=points(style.WIDTH["ring"]))
     picture.log_static("/world/orbit", line)
     inertial = np.broadcast_to(np.eye(3), samples.axes.shape)
@@ -97,10 +109,10 @@ def log_orbit(picture: Picture, story: Story, colors: np.ndarray) -> None:
     picture.log_strips("/world/tail", story.index, tails(story), colors)
 
 
-def tails(story: Story, count: int = 14) -> np.ndarray:
+def tails(story: Story, count: int = 16) -> np.ndarray:
     """The part of the orbit behind the craft, (n, count, 3)."""
     run, axes = story.samples.run, story.samples.axes
-    back = -TAIL * np.linspace(1.0, 0.0, count) ** 1.3  # closer to each other near the craft, where the eye is
+    back = np.linspace(-TAIL, 0.0, count)
     e = run.elements
     # the orbit's own distance there: r = p / (1 + e cos nu), with the anomaly of the drawn place
     radial = axes[..., 0]
@@ -116,19 +128,21 @@ def tails(story: Story, count: int = 14) -> np.ndarray:
     return np.asarray(np.einsum("nij,kj->nki", axes, circle) * distance[..., None])
 
 
-def log_plane(picture: Picture, story: Story, colors: np.ndarray) -> bool:
-    """What lies in the orbit's plane, to scale, where a flight is long enough to be compared with itself."""
+def log_plane(picture: Picture, story: Story, flights: Sequence[Flight]) -> bool:
+    """What lies in the orbit's plane, to scale, where a flight is long enough to be compared with itself; among flights
+    without its old orbits."""
     if story.frame.turns <= PLANE_TURNS:
         return False
-    plane = OrbitPlane(picture, story.samples.run, story.frame, LADDER)
-    plane.add(story.samples, colors)
-    rows = story.ladder(LADDER)
-    samples = story.samples
-    plane.add_ladder(samples.taken(rows), samples.index_of, rows, descent_colors(story, rows))
+    name, color = (f"{flights[0].name} ", flights[0].color) if flights else ("", style.CRAFT)
+    plane = OrbitPlane(picture, story.samples.run, story.frame, color)
+    plane.add(story.samples, orbit_colors(story, flights)[0], name)
+    if not flights:
+        rows, samples = story.ladder(LADDER), story.samples
+        plane.add_ladder(samples.taken(rows), samples.index_of, rows, descent_colors(story, rows), LADDER)
     return True
 
 
-def log_craft(picture: Picture, story: Story, names: Names) -> None:
+def log_craft(picture: Picture, story: Story) -> None:
     """The satellite with its tether or its drag sail, what brakes it, the way it flies, the plumb line."""
     samples, craft, index = story.samples, story.craft, story.index
     count = len(samples)
@@ -152,15 +166,14 @@ def log_craft(picture: Picture, story: Story, names: Names) -> None:
     else:
         log_drag_sail(picture, story)
     Glow(picture, "/world/rtn/body", craft).add(samples.index_of, samples.run.thrust.on)
-    log_drag(picture, story, tether, names)
+    log_drag(picture, story, tether)
     if np.any(samples.velocity_rtn):
         picture.log_static(
             "/world/rtn/flight",
             rr.Arrows3D(origins=[[0, 0.012, 0]], vectors=[[0, 0.085, 0]], colors=[style.SPEED], radii=points(1.6)),
         )
-        spots = [np.array([up, 0.115, 0.0]) for up in (0.0, 0.022, -0.022)]
-        names.add("/world/rtn/flight/name", "flies this way", style.SPEED, spots[0], FLIGHT, spots[1:])
-    log_plumb(picture, story, tether, names)
+        picture.log_label("/world/rtn/flight/name", "flies this way", style.SPEED, [0, 0.115, 0])
+    log_plumb(picture, story, tether)
     dot = rr.Points3D.from_fields(radii=points(5.5), colors=[style.CRAFT])
     picture.log_static("/world/craft", dot)
     picture.log_columns("/world/craft", index, rr.Points3D.columns(positions=f4(samples.position)))
@@ -188,7 +201,7 @@ def log_drag_sail(picture: Picture, story: Story) -> None:
     )
 
 
-def log_drag(picture: Picture, story: Story, tether: np.ndarray, names: Names) -> None:
+def log_drag(picture: Picture, story: Story, tether: np.ndarray) -> None:
     """Arrows against the flight: many along a tether, one of the air; with its number."""
     drag, most = story.drag, float(story.drag.max())
     if most <= 0:
@@ -205,11 +218,10 @@ def log_drag(picture: Picture, story: Story, tether: np.ndarray, names: Names) -
     picture.log_arrow_style("/world/rtn/drag", style.PUSH, style.WIDTH["many drags" if hanging else "drag"])
     columns = rr.Arrows3D.columns(origins=f4(origins.reshape(-1, 3)), vectors=f4(shown))
     picture.log_columns("/world/rtn/drag", story.index, columns.partition([len(places)] * count))
+    picture.log_label_style("/world/rtn/drag_name", style.PUSH)
     below = 0.55 if story.spin is None else 1.02  # out of the way of what turns
-    away = 0.75 * length + UNBRAKED if hanging else np.where(drag > 0, 1.25 * length, UNBRAKED)
-    back = np.where((drag > 0)[:, None], down, -samples.velocity_rtn)  # "no drag" stands off the craft as well
-    place = away[:, None] * back - below * tether[:, None] * (samples.normal_rtn if hanging else axis)
-    names.add("/world/rtn/drag_name", drag_texts(story), style.PUSH, place, DRAG)
+    place = 1.25 * vectors - below * tether[:, None] * (samples.normal_rtn if hanging else axis)
+    picture.log_labels("/world/rtn/drag_name", story.index, place, drag_texts(story))
 
 
 def drag_texts(story: Story) -> list[str]:
@@ -220,7 +232,7 @@ def drag_texts(story: Story) -> list[str]:
     return push_words(story.drag, story.drag_word)
 
 
-def log_plumb(picture: Picture, story: Story, tether: np.ndarray, names: Names) -> None:
+def log_plumb(picture: Picture, story: Story, tether: np.ndarray) -> None:
     """A line straight down to the ground, with the height there."""
     height = story.distance - 1
     zero = np.zeros_like(height)
@@ -233,28 +245,23 @@ def log_plumb(picture: Picture, story: Story, tether: np.ndarray, names: Names) 
     picture.log_static("/world/rtn/ground", ground)
     texts = [f"{h * story.frame.unit / 1e3:.0f} km" for h in height.tolist()]
     picture.log_columns("/world/rtn/ground", story.index, rr.Points3D.columns(positions=f4(foot), labels=texts))
-    names.add("", texts, style.CRAFT, foot, GROUND)
 
 
-def log_globe_eye(picture: Picture, story: Story) -> Space:
-    """The globe from afar, on its day side, in a frame that turns with the Sun; the craft is named while it is in
-    front."""
+def log_globe_eye(picture: Picture, story: Story, color: Color) -> Space:
+    """The globe from afar, on its day side, in a frame that turns with the Sun; the craft is named, in a colour, while
+    it is in front."""
     samples, sun = story.samples, story.samples.run.bodies.get("Sun")
     pole = samples.axes[0, :, 2]
     towards = cameras.over_planet(pole, None if sun is None else unit(sun[0]))
     distance = FAR * float(story.distance[0])
     origin = "/" if sun is None else "/world/season"
-    azimuth = np.zeros(len(samples)) if sun is None else np.arctan2(sun[:, 1], sun[:, 0])
-    c, s = np.cos(azimuth), np.sin(azimuth)
+    azimuth = season(story, story.time)
+    c, s = np.cos(azimuth[0]), np.sin(azimuth[0])
     x, y, z = distance * towards
-    eye = np.array([c[0] * x + s[0] * y, c[0] * y - s[0] * x, z])
-    eyes = np.stack([c * eye[0] - s * eye[1], s * eye[0] + c * eye[1], 0 * c + eye[2]], 1)
-    ray = unit(samples.position - eyes)
-    along = -np.sum(eyes * ray, 1)
-    missed = np.linalg.norm(eyes + along[:, None] * ray, axis=1)
-    behind = (missed < 1) & (np.linalg.norm(samples.position - eyes, axis=1) > along)
-    picture.log_label_style("/world/craft/name", style.CRAFT, story.setting.craft.label or "craft")
-    picture.log_labels("/world/craft/name", story.index, np.where(behind[:, None], np.nan, 1.06 * samples.position))
+    eye = np.array([c * x + s * y, c * y - s * x, z])
+    picture.log_label_style("/world/craft/name", color, story.setting.craft.label or "craft")
+    place = in_front(samples.position, eye, azimuth)
+    picture.log_labels("/world/craft/name", story.index, place)
     hidden = ("drag", "drag_name", "flight", "ground", "plumb", "body", "drag_sail")
     contents = (
         "+ /world/**",

@@ -1,108 +1,117 @@
-"""Names in space that do not lie on each other: of two that would meet on the screen of their view, the one that
-matters less is left out while they do, or stands elsewhere if it has a choice.
+"""Names in space that do not lie on each other: of two that would meet on the screen of the main view, the one that
+matters less is left out while they do.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
+from sailviz.recording import timelines
 from sailviz.recording.drawing.cameras import Camera, on_screen
 from sailviz.recording.drawing.log import Color, Picture
 from sailviz.recording.drawing.story import Story
 
-Size = tuple[float, float]
-MAIN: Size = (1005.0, 576.0)  # pixels of the main view in a window of 1600 x 900
-MAIN_OVER_TABLE: Size = (1005.0, 546.0)  # where the words below it are a table
+WIDE, HIGH = 1005.0, 576.0  # pixels of the main view in a window of 1600 x 900
 LETTER, ROOM, TALL, BELOW = 6.4, 14.0, 22.0, 3.0  # of a name: width of a letter, margins, height, gap below its point
+LATE = 300  # times after the end of a flight at which its names are looked at, where others go on
 
 
 @dataclass(frozen=True)
 class Name:
-    """Words, or those of each row, at places (n, 3), NaN where there are none; the lower its rank the more it matters.
-    path : where it is written, "" where something else has written it and it is only in the way.
-    choices : other places (3,) of one that stays, of which the one is taken that meets the fewest names."""
+    """Words at places (n, 3), NaN where there are none; the lower its rank the more it matters."""
 
     path: str
-    words: str | list[str]
+    words: str
     color: Color
     places: np.ndarray
     rank: int
-    choices: tuple[np.ndarray, ...] = ()
+    story: Story  # in whose rows
 
 
 class Names:
-    """Gathers the names of a view of that size, and writes those that find room."""
+    """Gathers the names of a view, and writes those that find room."""
 
-    def __init__(self, story: Story, size: Size = MAIN):
-        self._story, self._size = story, size
+    def __init__(self, story: Story):
+        self._story = story
         self._names: list[Name] = []
 
     def add(
-        self,
-        path: str,
-        words: str | list[str],
-        color: Color,
-        places: np.ndarray,
-        rank: int,
-        choices: Sequence[np.ndarray] = (),
+        self, path: str, words: str, color: Color, places: np.ndarray, rank: int, story: Story | None = None
     ) -> None:
-        """places : (n, 3) of each drawn row, or (3,) of what stays."""
-        count = len(self._story.time)
-        spots = np.broadcast_to(np.asarray(places, float), (count, 3))
-        self._names.append(Name(path, words, color, spots, rank, tuple(choices)))
+        """places : (n, 3) of each drawn row, or (3,) of what stays. story : whose rows, if of another flight."""
+        story = story or self._story
+        every = np.broadcast_to(np.asarray(places, float), (len(story.time), 3))
+        self._names.append(Name(path, words, color, every, rank, story))
 
-    def write(self, picture: Picture, camera: Camera, turn: np.ndarray | None = None) -> None:
+    def write(self, picture: Picture, camera: Camera, turn: np.ndarray) -> None:
         """Write the names as a camera sees them whose frame has turned about z by `turn` (n,) rad."""
-        turn = np.zeros(len(self._story.time)) if turn is None else turn
-        taken: list[np.ndarray] = []
-        for given in sorted(self._names, key=lambda name: name.rank):
-            name = self._best(given, camera, turn, taken)
-            box = boxes(name, camera, turn, self._size)
-            for other in taken:
-                box[meeting(box, other)] = np.nan
+        taken: list[tuple[np.ndarray, np.ndarray]] = []
+        for name in sorted(self._names, key=lambda name: name.rank):
+            late = self._later(name.story)
+            time = np.concatenate([name.story.time, late])
+            places = np.concatenate([name.places, np.repeat(name.places[-1:], len(late), axis=0)])
+            own_turn = turn if len(time) == len(turn) else np.interp(time, self._story.time, turn)
+            box = boxes(name.words, places, camera, own_turn)
+            for times, other in taken:
+                box[meeting(box, seen_at(time, times, other))] = np.nan
             shown = np.isfinite(box[:, 0])
             if np.any(shown):
-                taken.append(box)
-                self._write(picture, name, shown)
+                taken.append((time, box))
+                self._write(picture, name, np.where(shown[:, None], places, np.nan), late)
 
-    def _best(self, name: Name, camera: Camera, turn: np.ndarray, taken: list[np.ndarray]) -> Name:
-        """A name at the first of its places where it meets the fewest others."""
-        if not name.choices:
-            return name
-        spots = [name.places, *(np.broadcast_to(place, name.places.shape) for place in name.choices)]
-        stood = [replace(name, places=spot) for spot in spots]
-        met = [sum(int(meeting(boxes(one, camera, turn, self._size), other).sum()) for other in taken) for one in stood]
-        return stood[int(np.argmin(met))]
+    def _later(self, story: Story) -> np.ndarray:
+        """s, times at which other flights go on when one has ended: names of these may move on to its own."""
+        times = [name.story.time for name in self._names if name.story.time[-1] > story.time[-1]]
+        if not times:
+            return np.zeros(0)
+        late = np.unique(np.concatenate(times))
+        late = late[late > story.time[-1]]
+        return np.asarray(late[:: -(-len(late) // LATE)])
 
-    def _write(self, picture: Picture, name: Name, shown: np.ndarray) -> None:
-        """One name in the rows in which it is shown (n,): every row of what moves, only changes of what stays."""
-        if not name.path:
-            return
-        texts = None if isinstance(name.words, str) else name.words
-        still = texts is None and bool(np.all(name.places == name.places[0]))
+    def _write(self, picture: Picture, name: Name, places: np.ndarray, late: np.ndarray) -> None:
+        """One name at its places (n + m, 3), NaN where it is left out: every row of what moves, only changes of what
+        stays, as everything does at the m times when its flight has ended. These stand between rows, without a step."""
+        shown = np.isfinite(places[:, 0])
+        count = len(name.story.time)
+        still = bool(np.all(name.places == name.places[0]))
         if still and np.all(shown):
-            picture.log_label(name.path, str(name.words), name.color, name.places[0])
+            picture.log_label(name.path, name.words, name.color, name.places[0])
             return
-        rows = np.flatnonzero(np.diff(shown, prepend=not shown[0])) if still else np.arange(len(shown))
-        places = np.where(shown[:, None], name.places, np.nan)
-        picture.log_label_style(name.path, name.color, None if texts else str(name.words))
-        picture.log_labels(name.path, self._story.samples.index_of(rows), places[rows], texts)
+        changed = np.flatnonzero(np.diff(shown, prepend=not shown[0]))
+        rows = changed[changed < count] if still else np.arange(count)
+        picture.log_label_style(name.path, name.color, name.words)
+        picture.log_labels(name.path, name.story.samples.index_of(rows), places[rows])
+        after = changed[changed >= count]
+        if len(after):
+            index = timelines.between_rows(name.story.setting, late[after - count])
+            picture.log_labels(name.path, index, places[after])
 
 
-def boxes(name: Name, camera: Camera, turn: np.ndarray, size: Size) -> np.ndarray:
-    """Left, right, top and bottom (n, 4) of a name on the screen, pixels; NaN where it is not there."""
-    wide, high = size
+def seen_at(times: np.ndarray, own: np.ndarray, box: np.ndarray) -> np.ndarray:
+    """Boxes (n, 4) of times (n,) as they are seen at other times (m,): those of the last row before, as in a viewer;
+    NaN before the first."""
+    if times is own:
+        return box
+    row = np.searchsorted(own, times, side="right") - 1
+    return np.where((row >= 0)[:, None], box[np.maximum(row, 0)], np.nan)
+
+
+def boxes(words: str, places: np.ndarray, camera: Camera, turn: np.ndarray) -> np.ndarray:
+    """Left, right, top and bottom (n, 4) of words at places (n, 3) on the screen, pixels; NaN where they are not."""
     c, s = np.cos(turn), np.sin(turn)
-    x, y, z = name.places.T
+    x, y, z = places.T
     local = np.stack([c * x + s * y, c * y - s * x, z], 1)
-    flat = on_screen(local, camera, wide / high) * [0.5 * wide, -0.5 * high]
-    letters = len(name.words) if isinstance(name.words, str) else np.array([len(text) for text in name.words])
-    half = 0.5 * (LETTER * letters + ROOM)
+    flat = on_screen(local, camera, WIDE / HIGH) * [0.5 * WIDE, -0.5 * HIGH]
+    half = 0.5 * wide(words)
     top = flat[:, 1] + BELOW
     return np.stack([flat[:, 0] - half, flat[:, 0] + half, top, top + TALL], 1)
+
+
+def wide(words: str) -> float:
+    """How wide words are on the screen, pixels."""
+    return LETTER * len(words) + ROOM
 
 
 def meeting(one: np.ndarray, other: np.ndarray) -> np.ndarray:

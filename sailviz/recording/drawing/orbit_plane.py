@@ -15,7 +15,7 @@ import rerun as rr
 from sailviz.frames import quaternion, to_frame, unit
 from sailviz.recording.contract import word
 from sailviz.recording.drawing import style
-from sailviz.recording.drawing.log import Index, Picture, f4
+from sailviz.recording.drawing.log import Color, Index, Picture, f4
 from sailviz.recording.drawing.samples import Frame, Samples, rings
 from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Run, Shell
@@ -29,19 +29,19 @@ FAINT = 0.02  # share of the ramp below which a map is not drawn
 class OrbitPlane:
     """Writes /world/plane."""
 
-    def __init__(self, picture: Picture, first: Run, frame: Frame, ladder: int):
-        self._picture, self._frame, self._ladder = picture, frame, ladder
+    def __init__(self, picture: Picture, first: Run, frame: Frame, color: Color = style.CRAFT):
+        """color : of the altitude of the moment."""
+        self._picture, self._frame = picture, frame
         self._day = 86400.0 if frame.duration > 3 * 86400 else 3600.0
         ring = rr.LineStrips3D.from_fields(strips=[f4(circle(CIRCLE))], radii=points(style.WIDTH["recent"] * 0.8))
         picture.log_static("/world/plane/orbit", ring)
-        picture.log_strip_style("/world/plane/ladder", None, style.WIDTH["ladder"])
-        picture.log_label_style("/world/plane/now", style.CRAFT)
-        picture.log_static("/world/plane/rungs", rr.Points3D.from_fields(radii=points(style.ANCHOR), show_labels=True))
+        picture.log_label_style("/world/plane/now", color)
         axes = plane_axes(first)[0]
         for shell in first.setting.shells:
             log_shell(picture, f"/world/plane/shells/{word(shell.name)}", shell, axes, frame.unit)
 
-    def add(self, samples: Samples, colors: np.ndarray) -> None:
+    def add(self, samples: Samples, colors: np.ndarray, name: str = "") -> None:
+        """name : what stands before the altitude."""
         picture, index, run = self._picture, samples.index, samples.run
         axes = plane_axes(run)
         picture.log_pose("/world/plane", index, quaternion=quaternion(axes))
@@ -49,22 +49,25 @@ class OrbitPlane:
         ramp = rr.LineStrips3D.columns(colors=np.asarray(colors, np.uint32))
         picture.log_columns("/world/plane/orbit", index, [*rr.Transform3D.columns(**values), *ramp])
         radius = run.elements.semi_major_axis / self._frame.unit
-        texts = [f"{altitude:.0f} km" for altitude in (radius - 1) * self._frame.unit / 1e3]
+        texts = [f"{name}{altitude:.0f} km" for altitude in (radius - 1) * self._frame.unit / 1e3]
         picture.log_labels("/world/plane/now", index, np.stack([radius, 0 * radius, 0 * radius], 1), texts)
 
     def add_ladder(
-        self, run: Run, index_of: Callable[[np.ndarray], Index], rows: np.ndarray, colors: np.ndarray
+        self, run: Run, index_of: Callable[[np.ndarray], Index], rows: np.ndarray, colors: np.ndarray, count: int
     ) -> None:
         """Orbits far apart in time, turned into one plane, every other one with its age and altitude. rows (k,) of the
-        drawn ones, of which `run` has the numbers."""
+        drawn ones, of which `run` has the numbers; count : of them in the whole planned time."""
+        self._picture.log_strip_style("/world/plane/ladder", None, style.WIDTH["ladder"])
+        style_of_rungs = rr.Points3D.from_fields(radii=points(style.ANCHOR), show_labels=True)
+        self._picture.log_static("/world/plane/rungs", style_of_rungs)
         placed = rings(run, plane_axes(run), self._frame)
         lines = placed["scale"][:, None] * circle(CIRCLE)
         lines = turned_by(placed["quaternion"], lines) + placed["translation"][:, None]
         self._picture.log_strips("/world/plane/ladder", index_of(rows), lines, colors)
         radius = run.elements.semi_major_axis / self._frame.unit
-        rung = np.round((run.time - self._frame.start) / self._frame.duration * self._ladder)
+        rung = np.round((run.time - self._frame.start) / self._frame.duration * count)
         height = STAIRS * (self._frame.origin_radius - 1)
-        across = height * (1 - 2 * rung / self._ladder)
+        across = height * (1 - 2 * rung / count)
         age, name = (run.time - self._frame.start) / self._day, "d" if self._day > 3600 else "h"
         high = (radius - 1) * self._frame.unit / 1e3
         texts = [f"{t:.0f} {name}: {h:.0f} km" for t, h in zip(age.tolist(), high.tolist(), strict=True)]

@@ -42,13 +42,15 @@ def clock(duration: float) -> tuple[float, str]:
     return (3600.0, "Hour") if duration < SHORT else (DAY, "Day")
 
 
-def moments(time: np.ndarray, epoch: np.datetime64 | None) -> list[str]:
-    """When each row (n,), s, is: "2031-02-25  ·  Day 420 of 765"."""
-    duration = float(time[-1] - time[0])
+def moments(time: np.ndarray, epoch: np.datetime64 | None, span: tuple[float, float] | None = None) -> list[str]:
+    """When each row (n,), s, is: "2031-02-25  ·  Day 420 of 765". span : s, begin and end of what is counted, where
+    that are not the first and the last row."""
+    begin, end = (float(time[0]), float(time[-1])) if span is None else span
+    duration = end - begin
     size, word = clock(duration)
     decimals = 0 if duration / size >= 20 else 1
     total = f"{duration / size:.{decimals}f}"
-    counted = [f"{word} {(t - time[0]) / size:.{decimals}f} of {total}" for t in time.tolist()]
+    counted = [f"{word} {(t - begin) / size:.{decimals}f} of {total}" for t in time.tolist()]
     if epoch is None:
         return counted
     stamps = epoch.astype("datetime64[s]") + np.round(time).astype("timedelta64[s]")

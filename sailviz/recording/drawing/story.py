@@ -36,6 +36,14 @@ def reach_of(setting: Setting, run: Run) -> float:
 
 
 @dataclass(frozen=True)
+class Arrows:
+    """Of pushes: `least` of S for a weak one, twice that for the strongest, `most` m/s2."""
+
+    least: float
+    most: float
+
+
+@dataclass(frozen=True)
 class Story:
     """The drawn rows of a whole run, n of them, and what happened. Lengths in view units where not said otherwise."""
 
@@ -44,6 +52,7 @@ class Story:
     craft: CraftDrawing
     events: tuple[Event, ...]
     reach: float  # S: the largest distance from the centre that is drawn
+    beside: Arrows | None = None  # how long arrows are where several flights are drawn
 
     @property
     def setting(self) -> Setting:
@@ -224,8 +233,13 @@ class Story:
         wanted = np.searchsorted(self.share, np.linspace(0, 1, count + 1) - 1e-9)
         return np.unique(wanted.clip(0, len(self.time) - 1))
 
+    @property
+    def arrows(self) -> Arrows:
+        """How long the arrow of its push is, by itself or beside other flights."""
+        return self.beside or Arrows(0.12 if self.ring else 0.17, self.most)
+
     def arrow(self) -> np.ndarray:
         """(n, 3) the arrow of the push: never short where it pushes at all, nothing where it does not."""
-        least = 0.12 if self.ring else 0.17
-        length = least + least * self.push / self.most if self.most > 0 else np.zeros(len(self.time))
+        least, most = self.arrows.least, self.arrows.most
+        length = least + least * self.push / most if most > 0 else np.zeros(len(self.time))
         return np.asarray((length * (self.push > 0))[:, None] * self.reach * unit(self.thrust))

@@ -64,7 +64,15 @@ SPARE = {"violet": [190, 160, 255], "blue": [100, 150, 255], "yellow": [242, 228
 PUSH_RAMP = ([74, 56, 140], [176, 60, 140], [255, 96, 72], [255, 176, 84])  # weak to strong
 ALTITUDE_RAMP = ([100, 190, 255], [170, 140, 255], [244, 92, 150])  # of a descent, from its start to its end
 
-TRAIL_RECENT = [150, 230, 255]
+FLIGHTS = {  # of flights in one picture, in their order; apart from each other on the ground of the night
+    "cyan": [150, 230, 255],
+    "yellow": [242, 228, 140],
+    "pink": [236, 124, 190],
+    "green": [98, 214, 160],
+    "violet": [190, 160, 255],
+    "orange": [255, 176, 66],
+}
+TRAIL_RECENT = FLIGHTS["cyan"]
 TRAIL_PAST = [86, 160, 200]
 TRAIL_FUTURE = [44, 70, 96]
 FENCE_EDGE = {"past": [255, 170, 110], "future": [96, 52, 52], "ring": [205, 110, 74]}
@@ -169,6 +177,7 @@ DISC_RADIUS = 1.10
 STARS_RADIUS = 60.0
 PLANETS_WITHIN = 1.20
 NAMES_FROM = 0.28
+RAISED = 0.085  # events' names stand above their places, planets' hang below
 
 
 def points(size: float | np.ndarray) -> Any:

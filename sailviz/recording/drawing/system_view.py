@@ -6,16 +6,17 @@ Craft and arrow hang under /world/craft, which moves with the craft without turn
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import rerun as rr
 
-from sailviz.frames import body_axes, quaternion, unit
+from sailviz.frames import quaternion, unit
 from sailviz.recording.contract import word
 from sailviz.recording.drawing import cameras, style
 from sailviz.recording.drawing.cameras import Camera
-from sailviz.recording.drawing.craft import Glow, log_stowing
-from sailviz.recording.drawing.ensemble_names import add_ensemble_names
 from sailviz.recording.drawing.fence import Fence, fence_of, log_fence
+from sailviz.recording.drawing.flights import Flight, log_body, log_flights
 from sailviz.recording.drawing.ghosts import log_ghosts
 from sailviz.recording.drawing.landmarks import (
     CRAFT,
@@ -28,7 +29,7 @@ from sailviz.recording.drawing.landmarks import (
 )
 from sailviz.recording.drawing.layout import ALL, SO_FAR, TO_COME, Space, Span
 from sailviz.recording.drawing.log import Picture, f4
-from sailviz.recording.drawing.names import MAIN, MAIN_OVER_TABLE, Names
+from sailviz.recording.drawing.names import Names
 from sailviz.recording.drawing.planet import Planet, about_axis
 from sailviz.recording.drawing.samples import orbits
 from sailviz.recording.drawing.sky import log_stars, log_sun
@@ -47,33 +48,34 @@ FLAT, HIGH = (30.0, 38.0, 42.0), (38.0, 44.0)  # deg, elevations of the eye over
 LIFTED_FILM, LIFTED_WHEEL = (-24.0, -14.0, -4.0, 8.0, 20.0, 26.0), (20.0, 24.0, 28.0)
 
 
-def log_system(picture: Picture, story: Story) -> tuple[list[Space], dict[str, Span], str]:
-    """Write /world -> its views, the spans that they show of what is past and to come, and what is made up."""
-    found, fence = landmarks_of(story), fence_of(story)
-    names = Names(story, MAIN_OVER_TABLE if story.setting.ensembles else MAIN)
-    size = craft_size(story)
+def log_system(
+    picture: Picture, story: Story, flights: Sequence[Flight] = ()
+) -> tuple[list[Space], dict[str, Span], str]:
+    """Write /world -> its views, the spans that they show of what is past and to come, and what is made up. flights :
+    all that are drawn together, the first one first; then there are no walls nor still copies, which would hide them.
+    """
+    found, fence, names = landmarks_of(story), None if flights else fence_of(story), Names(story)
+    size = craft_size(story, bool(flights))
     log_backdrop(picture, story, names)
     log_references(picture, story, found)
     log_craft(picture, story, size, names)
     log_approximations(picture, story, names)
-    spans = log_trail(picture, story)
+    spans = log_trail(picture, story) | log_flights(picture, flights, size, names)
     if fence is not None:
         log_fence(picture, story, fence)
         for part, span in (("past", SO_FAR), ("future", TO_COME)):
             spans |= {f"/world/fence/{part}": span, f"/world/fence/{part}/edge": span} if not story.ring else {}
         log_ghosts(picture, story, size)
-    camera, turn = main_camera(story, found, fence, size)
+    camera, turn = main_camera(story, found, fence, size, flights)
     if np.any(turn):
         picture.log_pose("/world/pan", story.index, quaternion=about_axis(turn))
     log_landmarks(picture, story, found, first_eye(camera), names)
-    if story.setting.ensembles:
-        add_ensemble_names(story, names)
     add_push_name(story, size, turned(np.tile(first_eye(camera), (len(turn), 1)), -turn), names)
     names.write(picture, camera, turn)
     if story.frame.sparse:
         log_ladder(picture, story)
         spans["/world/ladder"] = ALL
-    return views_of(story, camera), spans, nominal_words(found)
+    return views_of(story, camera), spans, nominal_words(found, flights[0].name if flights else "this flight")
 
 
 def system_words(story: Story) -> list[str]:
@@ -86,9 +88,9 @@ def system_words(story: Story) -> list[str]:
     return words
 
 
-def craft_size(story: Story) -> float:
+def craft_size(story: Story, several: bool = False) -> float:
     """Side of a film, radius of a wheel, in view units; 0 where there is only a dot."""
-    among = style.AMONG_MANY if story.setting.ensembles else 1.0
+    among = style.AMONG_MANY if several or story.setting.ensembles else 1.0
     return story.craft.size * story.reach * among
 
 
@@ -141,19 +143,9 @@ def log_reference(picture: Picture, reference: Reference, length: float) -> None
 
 def log_craft(picture: Picture, story: Story, size: float, names: Names) -> None:
     """The craft in its attitude, its push, the line from the Sun."""
-    samples, index, craft = story.samples, story.index, story.craft
-    picture.log_pose("/world/craft", index, translation=samples.position)
+    samples, index = story.samples, story.index
+    log_body(picture, story, "/world/craft", size)
     picture.log_pose("/world/rtn", index, translation=samples.position, quaternion=quaternion(samples.axes))
-    turn = quaternion(body_axes(story.stance, samples.axes[..., 1]))
-    picture.log_pose("/world/craft/body", index, quaternion=turn)
-    craft.log_shape(picture, "/world/craft/body/shape", False)
-    if size > 0:
-        picture.log_scale("/world/craft/body/shape", size)
-    log_stowing(picture, "/world/craft/body/shape", craft, index, story.stowed, False)
-    Glow(picture, "/world/craft/body", craft).add(samples.index_of, samples.run.thrust.on)
-    if story.most > 0:
-        picture.log_arrow_style("/world/craft/push", style.PUSH, style.WIDTH["push"])
-        picture.log_arrows("/world/craft/push", index, story.arrow())
     if story.frame.sun:
         picture.log_strip_style("/world/sun_line", style.SUN_LINE, style.WIDTH["helper"])
         near = 0.06 * story.reach * unit(samples.position)
@@ -186,7 +178,9 @@ def log_ladder(picture: Picture, story: Story) -> None:
     picture.log_strips("/world/ladder", story.samples.index_of(rows), lines, color)
 
 
-def main_camera(story: Story, found: Landmarks, fence: Fence | None, size: float) -> tuple[Camera, np.ndarray]:
+def main_camera(
+    story: Story, found: Landmarks, fence: Fence | None, size: float, flights: Sequence[Flight] = ()
+) -> tuple[Camera, np.ndarray]:
     """The eye over the flight: on its lit side, and in a flight of up to a turn and a quarter slowly going along; and
     by how much it has turned in each row (n,), rad."""
     film = story.craft.facing
@@ -206,6 +200,7 @@ def main_camera(story: Story, found: Landmarks, fence: Fence | None, size: float
         spots = np.array([np.zeros(3), story.position[0], *near_planets(story, found)]) / story.reach
         eye = cameras.fixed_eye(normals, thrusts, weights, film, elevations(story), near=near, spots=spots)
     places = places_in_sight(story, found, fence, size, turn)
+    places = np.concatenate([places, *(beside_in_sight(story, flight.story, size, turn) for flight in flights[1:])])
     at, target = cameras.fit(places, eye, ASPECT, 0.93 if np.any(turn) else 0.90)
     origin = "/world/pan" if np.any(turn) else "/"
     return Camera("Flight", origin, tuple(at.tolist()), tuple(target.tolist())), turn
@@ -263,6 +258,17 @@ def places_in_sight(story: Story, found: Landmarks, fence: Fence | None, size: f
     edge = np.array([0.0, 0.0, size])
     moving = [position + 1.15 * arrow, position - edge, position + edge]
     return np.concatenate(swept + [turned(part, turn) for part in moving])
+
+
+def beside_in_sight(first: Story, story: Story, size: float, turn: np.ndarray) -> np.ndarray:
+    """What must fit of a flight beside the first, (k, 3), in the frame of the eye, which turns by `turn` in the first
+    one's rows: its way seen at any time, its craft when it is there."""
+    way = story.position
+    edge = np.array([0.0, 0.0, size])
+    now = np.interp(story.time, first.time, turn)
+    moving = [turned(part, now) for part in (way + 1.15 * story.arrow(), way - edge, way + edge)]
+    angles = np.linspace(0, turn[-1], SWEPT) if np.any(turn) else [0.0]
+    return np.concatenate([turned(way, np.full(len(way), angle)) for angle in angles] + moving)
 
 
 def turned(places: np.ndarray, angle: np.ndarray) -> np.ndarray:

@@ -8,34 +8,46 @@ import numpy as np
 
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.layout import SO_FAR, TO_COME, Span
-from sailviz.recording.drawing.log import Picture
+from sailviz.recording.drawing.log import Color, Picture
 from sailviz.recording.drawing.samples import orbits, smooth_lines
 from sailviz.recording.drawing.story import Story
 
 STRIP = 4  # drawn rows in one piece
 RING_PAST = 0.9  # revolutions of a ring's trail
+OF_THE_FIRST: dict[str, Color] = {
+    "recent": style.TRAIL_RECENT,
+    "past": style.TRAIL_PAST,
+    "future": style.TRAIL_FUTURE,
+}
+DIMMER = {"recent": 1.0, "past": 0.62, "future": 0.34}  # of a colour, like those of the first flight
 
 
-def log_trail(picture: Picture, story: Story) -> dict[str, Span]:
-    """Write /world/trail or /world/orbit -> which part of the run each part shows. They do not overlap: lines on one
+def trail_colors(color: Color) -> dict[str, Color]:
+    """Of the parts of a trail in a colour of its own."""
+    return {part: style.dim(color, factor) for part, factor in DIMMER.items()}
+
+
+def log_trail(
+    picture: Picture, story: Story, top: str = "/world", colors: dict[str, Color] = OF_THE_FIRST
+) -> dict[str, Span]:
+    """Write trail or orbit under `top` -> which part of the run each part shows. They do not overlap: lines on one
     another tear."""
     if story.frame.sparse:
-        picture.log_strip_style("/world/orbit", style.TRAIL_RECENT, 0.8 * style.WIDTH["recent"])
-        picture.log_strips("/world/orbit", story.index, orbits(story.samples.run, story.frame))
+        picture.log_strip_style(f"{top}/orbit", colors["recent"], 0.8 * style.WIDTH["recent"])
+        picture.log_strips(f"{top}/orbit", story.index, orbits(story.samples.run, story.frame))
         return {}
-    colors = {"recent": style.TRAIL_RECENT, "past": style.TRAIL_PAST, "future": style.TRAIL_FUTURE}
     parts = [part for part in colors if not (part == "future" and story.ring)]
     ends, pieces = pieces_of(story)
     index = story.samples.index_of(ends)
     for part in parts:
-        path = f"/world/trail/{part}"
+        path = f"{top}/trail/{part}"
         picture.log_strip_style(path, colors[part], style.WIDTH[part])
         picture.log_broken_strips(path, index, pieces)
     back = -RING_PAST * story.duration / story.turns if story.ring else None
     spans: dict[str, Span] = {
-        "/world/trail/past": (back, -story.tail),
-        "/world/trail/recent": (-story.tail, SO_FAR[1]),
-        "/world/trail/future": TO_COME,
+        f"{top}/trail/past": (back, -story.tail),
+        f"{top}/trail/recent": (-story.tail, SO_FAR[1]),
+        f"{top}/trail/future": TO_COME,
     }
     return {path: span for path, span in spans.items() if path.rsplit("/", 1)[-1] in parts}
 

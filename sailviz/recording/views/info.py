@@ -40,8 +40,9 @@ def info(source: FilePath | Recording) -> dict[str, Any]:
     """Everything about a recording that is not its numbers, ready for JSON. source : path or Recording.
 
     Keys: path, bytes, application, contract, title, family, body, craft, rows, span_s, epoch, complete, ended,
-    checksums ("hold", or "none" where the file has none of its own), identity, versions, accuracy, events,
-    expectations, views, truth (entity -> column -> kind), picture (entities).
+    checksums ("hold", or "none" where the file has none of its own), identity, versions, accuracy, flights (of several
+    that were recorded together: name, title, identity, rows, start_s), events, expectations, views,
+    truth (entity -> column -> kind), picture (entities).
     """
     recording = read(source)
     scene: Mapping[str, np.ndarray] = recording.get("/scene", {})
@@ -52,6 +53,7 @@ def info(source: FilePath | Recording) -> dict[str, Any]:
     time = recording["/state"]["time_s"] if "/state" in recording else np.zeros(0)
     epoch, views = epoch_of(recording), views_of(recording)
     truth = truth_of(recording) + [name for name in ("/events",) if name in recording]
+    known = {*truth, "/scene", *(f"{flight.path}/scene" for flight in recording.flights)}
     return {
         "path": str(recording.path),
         "bytes": recording.path.stat().st_size,
@@ -70,11 +72,15 @@ def info(source: FilePath | Recording) -> dict[str, Any]:
         "identity": recording.identity,
         "versions": recording.versions,
         "accuracy": recording.accuracy,
+        "flights": [
+            {"name": f.name, "title": f.title, "identity": f.identity, "rows": f.rows, "start_s": f.start}
+            for f in recording.flights
+        ],
         "events": [{"name": event.name, "time_s": event.time} for event in recording.events],
         "expectations": [dict(item) for item in recording.resolved.get("expect", [])],
         "views": sorted(name for _, name, _ in (views or {})),
         "truth": {name: kinds(recording, name) for name in truth},
-        "picture": [name for name in recording.entities if name not in (*truth, "/scene")],
+        "picture": [name for name in recording.entities if name not in known],
     }
 
 
@@ -123,6 +129,9 @@ def in_words(facts: dict[str, Any]) -> str:
     say("identity", facts["identity"])
     say("versions", ", ".join(f"{name} {number}" for name, number in facts["versions"].items()))
     say("accuracy", facts["accuracy"])
+    for flight in facts["flights"]:
+        start = f", from {duration(flight['start_s'])} on" if flight["start_s"] else ""
+        say("flight", f"{flight['name']}: {flight['title']}, {flight['rows']:,} rows{start}, {flight['identity'][:16]}")
     for event in facts["events"]:
         say("event", f"{event['name']} at {duration(event['time_s'])}")
     for item in facts["expectations"]:

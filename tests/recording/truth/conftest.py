@@ -3,6 +3,7 @@
 import pytest
 
 from sailviz.recording import record
+from sailviz.recording.overlay import record_together
 
 from .flights import FLIGHTS, Flight
 
@@ -15,7 +16,11 @@ def flights(tmp_path_factory):
     def flight(name: str) -> Flight:
         if name not in known:
             path = folder / f"{name.replace(' ', '_')}.rrd"
-            record(FLIGHTS[name](), path)
+            flown = FLIGHTS[name]()
+            if isinstance(flown, dict):
+                record_together(flown, path)
+            else:
+                record(flown, path)
             known[name] = Flight(name, path)
         return known[name]
 

@@ -101,21 +101,23 @@ def sidereal_angle(seconds) -> np.ndarray:
 class Truth:
     """The numbers of one recording."""
 
-    def __init__(self, recording, slowed: bool = False):
-        self.recording, self.slowed = recording, slowed
-        state, attitude, thrust = recording["/state"], recording["/attitude"], recording["/thrust"]
+    def __init__(self, recording, slowed: bool = False, top: str = ""):
+        """top : above the entities of a flight beside the first."""
+        self.recording, self.slowed, self.top = recording, slowed, top
+        state, attitude, thrust = (recording[f"{top}/{name}"] for name in ("state", "attitude", "thrust"))
         self.steps, self.time = state.timeline("step"), state["time_s"]
         self.position, self.velocity = state["position_m"], state["velocity_m_s"]
         self.normal, self.quaternion = attitude["normal"], attitude["quaternion"]
         self.pitch, self.cone, self.clock = (attitude[f"{name}_rad"] for name in ("pitch", "cone", "clock"))
         self.thrust, self.on = thrust["acceleration_m_s2"], thrust["on"].astype(bool)
-        self.elements = recording["/elements"]
-        self.environment = dict(recording["/environment"]) if "/environment" in recording else {}
-        self.scene = {name: values[0] for name, values in recording["/scene"].items()}
+        self.elements = recording[f"{top}/elements"]
+        self.environment = dict(recording[f"{top}/environment"]) if f"{top}/environment" in recording else {}
+        self.scene = {name: values[0] for name, values in recording[f"{top}/scene"].items()}
+        self.clock = self.time + float(self.scene.get("start_s", 0.0))  # of the first flight
         self.mu, self.radius = float(self.scene["body_mu_m3_s2"]), float(self.scene["body_radius_m"])
         self.body, self.kind = self.scene["body"], self.scene["craft_kind"]
-        self.resolved = recording.resolved
-        scene = recording["/scene"]
+        self.resolved = recording.resolved if not top else {}
+        scene = recording[f"{top}/scene"]
         self.gaps = np.array(scene.get("gaps_s", []), float).reshape(-1, 2)
         self.stowed = ~np.any(self.normal, axis=1)
 
@@ -126,7 +128,7 @@ class Truth:
     def seconds(self) -> np.ndarray | None:
         """Of each row after J2000, None without an epoch."""
         try:
-            utc = self.recording["/state"].timeline("utc")
+            utc = self.recording[f"{self.top}/state"].timeline("utc")
         except KeyError:
             return None
         return (utc - np.datetime64("2000-01-01T12:00:00", "ns")) / np.timedelta64(1, "ns") * 1e-9

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,6 +16,7 @@ from sailviz.run.from_arrays import trajectory
 from .facts import Truth
 from .picture import Picture
 
+BESIDE = re.compile("/flight/[^/]+/state")
 AU, DAY = 149_597_870_700.0, 86_400.0
 MU_SUN, MU_EARTH, EARTH = 1.327_124_400_18e20, 3.986_004_415e14, 6_378_137.0
 
@@ -25,10 +27,34 @@ class Flight:
 
     name: str
     path: Path
+    word: str = ""  # of a flight beside the first, in its paths
 
     @cached_property
     def picture(self) -> Picture:
         return Picture(self.path)
+
+    @cached_property
+    def all(self) -> list[Flight]:
+        """The flights of one picture, the first one first."""
+        others = [entity.split("/")[2] for entity in self.picture.entities if BESIDE.fullmatch(entity)]
+        return [self, *map(self.beside, others)] if not self.word else self._first.all
+
+    def beside(self, word: str) -> Flight:
+        """A flight beside this one, in the same picture."""
+        known = self.__dict__.setdefault("_beside", {})
+        if word not in known:
+            known[word] = Flight(self.name, self.path, word)
+            known[word].__dict__.update(picture=self.picture, _first=self)
+        return known[word]
+
+    @cached_property
+    def called(self) -> str:
+        """The name of this flight among several."""
+        facts = self.truth.recording["/scene"]
+        names = [str(name) for name in np.ravel(facts["flights"])]
+        if not self.word:
+            return names[0]
+        return str(self.truth.recording[f"/flight/{self.word}/scene"]["name"][0])
 
     def spreads(self, time) -> list[tuple[float, str]]:
         """Standard deviation of the distance from the Sun, au, of each ensemble at a time, s, with its name."""
@@ -53,7 +79,8 @@ class Flight:
 
     @cached_property
     def truth(self) -> Truth:
-        return Truth(sailviz.read(self.path), slowed=self.name in SLOWED)
+        top = f"/flight/{self.word}" if self.word else ""
+        return Truth(sailviz.read(self.path), slowed=self.name in SLOWED, top=top)
 
 
 def scene(name: str, **values) -> Callable[[], sailviz.Run]:
@@ -211,8 +238,52 @@ def own_low_gap():
     return trajectory(time, position, velocity, **options)
 
 
+def together_sails():
+    """Three fast ways, none of which takes as long as another, without a date."""
+    return {
+        "ideal": scene("transfers/earth-mars-ideal", propagation__outputs=41)(),
+        "real film": scene("transfers/earth-mars-jpl-2015", propagation__outputs=53)(),
+        "to Venus": scene("transfers/earth-venus-ideal", propagation__outputs=25)(),
+    }
+
+
+def together_dated():
+    """Sails by date: one starts 60 days before the first and has a gap, one 40 days after it and ends later."""
+    runs, days = {}, {"first": (0, 300, 37), "early bird": (-60, 250, 33), "late": (40, 380, 45)}
+    for number, (name, (start, length, count)) in enumerate(days.items()):
+        time = length * DAY * np.linspace(0, 1, count)
+        position, velocity = kepler(time, MU_SUN, [AU, 0.05 * number * AU, 0], [1e3, 29e3 + 2e3 * number, 4e3])
+        normal = position / np.linalg.norm(position, axis=1, keepdims=True) + 0.4 * tumbling(count, 2, number)
+        thrust = (1 + number) * 1e-4 * normal * (1 + 0.4 * np.sin(time / 2e6))[:, None]
+        runs[name] = trajectory(
+            time,
+            position,
+            velocity,
+            normal=normal,
+            thrust=thrust,
+            epoch=np.datetime64("2031-04-01") + np.timedelta64(start, "D"),
+            title=f"Sail {number}",
+            events=[("flare", 200 * DAY)],
+            gaps=[(time[12], time[13])] if number == 1 else [],
+        )
+    return runs
+
+
+def together_low():
+    """A brake, and beside it two satellites without one, one of them elsewhere."""
+    time = DAY * np.linspace(0, 0.5, 91)
+    options = {"mu": MU_EARTH, "epoch": "2019-03-20T22:00:00", "family": "deorbit"}
+    runs = {
+        "tether": scene("deorbit/gravity-gradient", propagation__duration_d=0.45, propagation__output_interval_min=7)()
+    }
+    for name, height, tilt in (("alone", 700e3, 1.7), ("far off", 900e3, 0.6)):
+        position, velocity = ellipse(time, MU_EARTH, EARTH + height, 0.01, tilt)
+        runs[name] = trajectory(time, position, velocity, **options)
+    return runs
+
+
 SMALL = {"propagation__outputs": 31}
-FLIGHTS: dict[str, Callable[[], sailviz.Run]] = {
+FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "displaced": scene(
         "displaced/circular",
         propagation__duration_yr=1.3,
@@ -262,5 +333,9 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run]] = {
     "own sparse": own_sparse,
     "own steps": own_steps,
     "own low gap": own_low_gap,
+    "together sails": together_sails,
+    "together dated": together_dated,
+    "together low": together_low,
 }
+TOGETHER = tuple(name for name in FLIGHTS if name.startswith("together"))
 SLOWED = ("decay", "drag", "own point")

@@ -11,11 +11,14 @@ from .now import braking, told
 from .seen import body, home, some, spots, texts
 
 TAIL = 0.9  # rad
+FIRST = (150, 230, 255)  # of the first of several flights
 START, MIDDLE, END = (100, 190, 255), (170, 140, 255), (244, 92, 150)  # of a descent by altitude
 
 
 def ramp(f, rows, factor=1.0) -> np.ndarray:
-    """The colour (n, 3) of rows, from the altitude of the start to the lowest of the run."""
+    """The colour (n, 3) of rows, from the altitude of the start to the lowest of the run; among flights its own."""
+    if len(f.all) > 1:
+        return factor * np.tile(np.array(FIRST, float), (len(rows), 1))
     from .now import heights
 
     high = heights(f)
@@ -145,7 +148,8 @@ def craft_dot(f, entity):
 
 
 def craft_dot_name(f, entity):
-    """Its kind in words over it, while the planet does not hide it from the view that shows it."""
+    """Its kind in words, or its name among several flights, over it, while the planet does not hide it from the view
+    that shows it."""
     (view,) = [view for view in f.picture.views if view.name == "Where it is"]
     shown = 0
     for row, step in enumerate(f.truth.steps):

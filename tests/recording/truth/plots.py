@@ -282,9 +282,19 @@ def lane(f, entity):
 
 
 def log(f, entity):
-    """The events with their times, at the rows at or after them, after a line that says start."""
+    """The events with their times, at the rows at or after them, after a line that says start; those of a flight beside
+    the first after its name, at their time on the first one's clock."""
     steps, lines = f.picture.rows(entity, "TextLog:text")
-    lines = [line[0] for line in lines]
+    rows = list(zip(steps.tolist(), (line[0] for line in lines), strict=True))
+    beside = {word: [] for word in (g.called for g in f.all[1:])}
+    for row in rows[:]:
+        called = next((word for word in beside if f": {word}: " in row[1]), None)
+        if called:
+            beside[called].append(row[1].replace(f"{called}: ", ""))
+            rows.remove(row)
+    for g in f.all[1:]:
+        of_it(g, beside[g.called])
+    steps, lines = ([row[k] for row in rows] for k in (0, 1))
     assert (steps[0], lines[0]) == (0, "start")
     events = f.truth.recording.events
     assert len(lines) == 1 + len(events)
@@ -298,6 +308,18 @@ def log(f, entity):
         reach = np.linalg.norm(after - before)
         place = event.state[:3]
         assert min(np.linalg.norm(place - before), np.linalg.norm(place - after)) <= reach
+
+
+def of_it(f, lines):
+    """The events of a flight beside the first."""
+    path = f"{f.truth.top}/events"
+    table = f.truth.recording.get(path, {"time_s": [], "name": []})
+    assert len(lines) == len(table["time_s"])
+    for line, time, name in zip(lines, table["time_s"], table["name"], strict=True):
+        word, value, small, told = re.fullmatch(r"(?:(day|hour) (\S+)|(\S+) s): (.*)", line).groups()
+        seconds = float(value) * {"day": DAY, "hour": 3600.0}[word] if word else float(small)
+        assert abs(seconds - (time + f.truth.clock[0] - f.truth.time[0])) <= 6e-4 * abs(seconds)
+        assert told == name
 
 
 def about(f, entity):

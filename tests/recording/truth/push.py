@@ -194,20 +194,22 @@ def ring(f) -> bool:
 
 
 def push_arrow(f, entity):
-    """From the craft along /thrust; half as long as the longest where it hardly pushes, nothing where it does not."""
+    """From the craft along /thrust; half as long as the longest of all flights where it hardly pushes, nothing where it
+    does not."""
     origin, vector = arrows(f, entity)
     same_place(origin, home(f, entity))
     same_direction(vector, f.truth.carried(f.truth.thrust))
     push = strength(f)
     low, high = ON_RING if ring(f) else (SHORTEST, LONGEST)
     length = np.linalg.norm(vector, axis=1) / scene_reach(f)
-    expected = np.where(push > 0, low + (high - low) * push / push.max(), 0.0)
+    strongest = max(strength(g).max() for g in f.all)  # of all flights in the picture: their arrows are comparable
+    expected = np.where(push > 0, low + (high - low) * push / strongest, 0.0)
     assert np.abs(length - expected).max() < 1e-5
 
 
 def scene_reach(f) -> float:
-    """The largest distance that must be in sight: of the flight, of its target, of its ensembles."""
-    far = [f.truth.reach]
+    """The largest distance that must be in sight: of the flights, of their target, of its ensembles."""
+    far = [g.truth.reach for g in f.all]
     for entity in f.picture.entities:
         if entity.startswith("/world/references/") and not entity.endswith("/reached"):
             lines = np.concatenate(f.picture.line(entity, 0))

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
 
-from . import arrival, close_up, craft, earth, ensembles, landmarks, low, now, plots, push, system
+from . import arrival, close_up, craft, earth, ensembles, landmarks, low, now, plots, push, system, together
 
 INERTIAL = "inertial, carried along the orbit where a run is slowed"
 NEAR = "orbital: radial, transverse, normal; of a tether transverse, normal, up"
@@ -49,6 +49,14 @@ def of_place(f, entity):
 def orbit_of(f, entity):
     """The orbit of the moment, of a low one in the colour of its altitude."""
     (low.orbit if "/world/tail" in f.picture.entities else system.osculating)(f, entity)
+
+
+def place_beside(f, entity, word):
+    """A frame or, in a low orbit, a dot where a flight beside the first is."""
+    if f.picture.moves(entity, "Transform3D:translation"):
+        craft.place_only(f.beside(word), entity)
+    else:
+        together.low_craft(f, entity, word)
 
 
 SYSTEM = (
@@ -216,6 +224,16 @@ def of_plot(f, entity, key, *_):
     (NAMED[key][1] if key in NAMED else plots.acting)(f, entity, key)
 
 
+def now_line(f, entity):
+    """The line of the moment, of one flight or of several."""
+    (together.line if len(f.all) > 1 else now.line)(f, entity)
+
+
+def about(f, entity):
+    """The words, of one flight or of several."""
+    (together.about if len(f.all) > 1 else plots.about)(f, entity)
+
+
 CURVES = (
     *(Claim(f"/plots/{key}", CURVE, truth, "-", "title's unit", check) for key, (truth, check) in NAMED.items()),
     Claim("/plots/*", CURVE, "/environment", "-", "title's unit", plots.acting),
@@ -224,9 +242,9 @@ CURVES = (
         Claim(f"/{lane}", "StateChange StateConfiguration", "/thrust on, /environment", "-", "in words", plots.lane)
         for lane in ("push", "light", "force_law_valid", "warm", "stowed")
     ),
-    Claim("/now", "TextDocument", "every column", "-", "in words", now.line),
+    Claim("/now", "TextDocument", "every column", "-", "in words", now_line),
     Claim("/log", "TextLog", "/events", "-", "in words", plots.log),
-    Claim("/about", "TextDocument", "/scene", "-", "in words", plots.about),
+    Claim("/about", "TextDocument", "/scene", "-", "in words", about),
 )
 
 BAND = "Measurements"
@@ -252,10 +270,29 @@ ENSEMBLES = (
     Claim("/arrival/*/*/sigma#", "LineStrips2D", "covariance_m2", "less nominal", "deg, 1000/au", arrival.sigma),
 )
 
+BESIDE = "/world/flight/*"
+TOGETHER = (
+    Claim("/world/names/flight/*", POINT, "/scene flights, /state", INERTIAL, "1/L", together.name),
+    Claim(f"{BESIDE}/trail/*", LINE, "/flight/*/state position_m", INERTIAL, "1/L", together.trail),
+    Claim(f"{BESIDE}/craft", f"{MOVE} {POINT}", "/flight/*/state", INERTIAL, "1/L", place_beside),
+    Claim(f"{BESIDE}/craft/body", MOVE, "/flight/*/attitude", INERTIAL, "1", together.beside(craft.body_pose)),
+    Claim(f"{BESIDE}/craft/push", ARROW, "/flight/*/thrust", INERTIAL, "one for all", together.beside(push.push_arrow)),
+    Claim(f"{BESIDE}/craft/name", POINT, "/flight/*/state", INERTIAL, "1.06/L", together.low_name),
+    Claim(f"{BESIDE}/orbit", f"{LINE} {MOVE}", "/flight/*/state as an orbit", INERTIAL, "1/L", together.low_orbit),
+    Claim("/world/plane/flight/*/orbit", f"{LINE} {MOVE}", "/flight/*/elements", "-", "1/L", together.plane_orbit),
+    Claim("/world/plane/flight/*/now", POINT, "/flight/*/elements", "-", "1/L", together.plane_altitude),
+    Claim("/plots/*/*", CURVE, "/flight/*, Hermite's cubic", "-", "title's unit", together.curve),
+)
 CRAFTS = (*of_craft("/world/craft"), *of_craft("/world/rtn"), *of_craft("/sail"))
-TABLE = (*SYSTEM, *EARTH, *LOW, *CRAFTS, *CLOSE_UP, *ENSEMBLES, *CURVES)
+BESIDES = tuple(
+    replace(row, pattern=row.pattern.replace("/world/craft", f"{BESIDE}/craft"), check=together.beside(row.check))
+    for row in of_craft("/world/craft")
+    if not row.pattern.endswith(("/dot", "/plume", "/panels", "/nozzle", "/hub", "sheath"))
+    and not row.pattern.endswith(("/tethers", "/rim", "/disc"))
+)
+TABLE = (*SYSTEM, *EARTH, *LOW, *CRAFTS, *CLOSE_UP, *ENSEMBLES, *TOGETHER, *BESIDES, *CURVES)
 NUMBERS = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/approximation", "/ensemble", "/events")
-NUMBERS = (*NUMBERS, "/scene", "/__properties", "/__checksums")  # what is not drawn: the truth itself
+NUMBERS = (*NUMBERS, "/scene", "/flight", "/__properties", "/__checksums")  # what is not drawn: the truth itself
 
 
 @cache

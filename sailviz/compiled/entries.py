@@ -1,0 +1,222 @@
+"""Functions that Python calls, and C functions that compiled code calls by their address, without numba once their
+machine code is on disk."""
+
+from __future__ import annotations
+
+import ctypes
+import operator
+import struct
+from collections.abc import Callable, Sequence
+from functools import cache, cached_property, update_wrapper
+from typing import Any
+
+import numpy as np
+
+from sailviz.compiled import machine_code
+from sailviz.compiled.decorators import OPTIONS, called
+from sailviz.compiled.machine_code import CannotLoadError, MachineCode
+
+_PLACE = ctypes.c_void_p
+_STATUS = ctypes.CFUNCTYPE(ctypes.c_int, _PLACE, _PLACE, _PLACE)  # where the result goes, where an error, the arguments
+_REAL, _WHOLE = struct.Struct("d"), struct.Struct("q")
+MISFIT = -1  # result of an entry whose arguments do not fit
+
+
+DTYPES: dict[str, np.dtype[Any]] = {
+    "d": np.dtype(np.float64),
+    "i": np.dtype(np.int64),
+    "j": np.dtype(np.int32),
+    "u": np.dtype(np.uint64),
+}
+DTYPES["b"] = np.dtype(np.bool_)
+
+
+class Kind:
+    """What an entry takes in one place.
+
+    word : d or i for a float or an integer; with a number of axes, d2, i1, j1, u1, b1, r1, an array in C order of
+    float64, int64, int32, uint64, bool or records; in capitals, D2, one that is written.
+    """
+
+    def __init__(self, word: str, record: np.dtype[Any] | None):
+        letter, axes = word[0].lower(), word[1:]
+        self.word, self.is_array, self.written = word, bool(axes), word[0].isupper()
+        dtype: np.dtype[Any] | None = record if letter == "r" else DTYPES.get(letter)
+        if dtype is None or not (axes.isdecimal() if axes else word in "di"):
+            raise ValueError(f"there is no kind {word!r}")
+        self.axes = int(axes or 0)
+        self.dtype: np.dtype[Any] = dtype
+
+
+class Entry:
+    """A function of arrays and numbers that Python calls and that returns an integer, not below zero.
+
+    Its arguments are handed over as one address, that of their tuple; compiled code reads them out of numpy's arrays by
+    itself (`unpacking.py`), which costs a fifth of handing over what an array consists of. TypeError where they are not
+    of the kinds declared.
+    """
+
+    def __init__(self, function: Callable[..., int], kinds: str, record: np.dtype[Any] | None):
+        update_wrapper(self, function)
+        self.py_func = function
+        self.name = f"{function.__module__}.{function.__qualname__}"
+        self.kernel = called(function)  # for compiled code
+        self.kinds = tuple(Kind(word, record) for word in kinds.split())
+        numbers = [(i, kind.word) for i, kind in enumerate(self.kinds, 2) if not kind.is_array]
+        self._floats = tuple(i for i, word in numbers if word == "d")
+        self._integers = tuple(i for i, word in numbers if word == "i")
+        self._count = len(self.kinds)
+
+    @property
+    def _numba_type_(self) -> Any:
+        return self.kernel._numba_type_
+
+    def is_compiled(self) -> bool:
+        """Whether its machine code is in memory or, as it seems, on disk."""
+        try:
+            return "native" in self.__dict__ or machine_code.is_kept(self.py_func)
+        except CannotLoadError:
+            return False
+
+    def _compiled(self) -> MachineCode | None:
+        from sailviz.compiled.compiling import compile_native
+        from sailviz.compiled.unpacking import unpacking
+
+        kernel = self.kernel.bare
+        fits, arguments = unpacking(self.kinds)
+
+        def unpacked(place: Any) -> Any:
+            if not fits(place):
+                return MISFIT
+            return kernel(*arguments(place))
+
+        return compile_native(unpacked, "int64(int64)")
+
+    @cached_property
+    def native(self) -> Callable[[int, int, int], int] | None:
+        """The compiled function, or None where numba has to call it."""
+        if not _memory_is_as_expected():
+            return None
+        address = _address(self.py_func, self._compiled)
+        return None if address is None else _STATUS(address)
+
+    @cached_property
+    def _by_numba(self) -> Callable[..., int]:
+        import numba
+
+        made: Callable[..., int] = numba.njit(**OPTIONS)(self.py_func)
+        return made
+
+    def __call__(self, *arguments: Any) -> int:
+        if len(arguments) != self._count:
+            raise TypeError(f"{self.name} takes {self._count} arguments, not {len(arguments)}")
+        native = self.native
+        if native is None:
+            return self._called_by_numba(arguments)
+        given = [np.ndarray, float, *arguments]
+        for i in self._floats:
+            given[i] = float(given[i])
+        for i in self._integers:
+            (given[i],) = _REAL.unpack(_WHOLE.pack(given[i]))  # as a float of the same bits
+        handed = tuple(given)
+        answer = (ctypes.c_int64 * 2)()  # the result, and where an error would be described
+        place = ctypes.addressof(answer)
+        if native(place, place + 8, id(handed)):
+            raise RuntimeError(f"{self.name} failed")
+        if answer[0] < 0:
+            raise TypeError(f"{self.name} does not take {self._misfits(arguments)}")
+        return int(answer[0])
+
+    def _called_by_numba(self, arguments: Sequence[Any]) -> int:
+        misfits = self._misfits(arguments)
+        if misfits:
+            raise TypeError(f"{self.name} does not take {misfits}")
+        numbers: dict[str, Callable[[Any], Any]] = {"d": float, "i": operator.index}
+        pairs = zip(arguments, self.kinds, strict=True)
+        return int(self._by_numba(*(one if kind.is_array else numbers[kind.word](one) for one, kind in pairs)))
+
+    def _misfits(self, arguments: Sequence[Any]) -> str:
+        """Which arguments are not of their kinds, in words."""
+        pairs = enumerate(zip(arguments, self.kinds, strict=True), 1)
+        return "; ".join(
+            f"{_described(one)} as argument {number}, {kind.word}"
+            for number, (one, kind) in pairs
+            if kind.is_array and not _fits(one, kind)
+        )
+
+
+def _fits(array: Any, kind: Kind) -> bool:
+    return (
+        type(array) is np.ndarray
+        and array.ndim == kind.axes
+        and array.dtype == kind.dtype
+        and array.flags.c_contiguous
+        and array.flags.aligned
+        and (array.flags.writeable or not kind.written)
+    )
+
+
+def _described(one: Any) -> str:
+    if not isinstance(one, np.ndarray):
+        return type(one).__name__
+    order = "" if one.flags.c_contiguous else " not in C order"
+    return f"an array {one.shape} of {one.dtype.kind}{one.dtype.itemsize}{order}"
+
+
+def entry(kinds: str, record: np.dtype[Any] | None = None) -> Callable[[Callable[..., int]], Entry]:
+    """Make an `Entry` of a module-level function that creates no array, counts no reference and raises nothing.
+
+    kinds : what it takes, in order, see `Kind`; record : the structured type of its records.
+    """
+    return lambda function: Entry(function, kinds, record)
+
+
+@cache
+def c_function(function: Callable[..., None], declared: Callable[[], Any]) -> tuple[int, object]:
+    """(address, what keeps it alive) of a function that compiled code calls in numba's own convention: int status(
+    *result, **error, arguments ...). Compiled on first use.
+
+    declared : makes its signature, of numba's types, for which numba is imported. A function that does not do without
+    numba, as one that calls numba's `carray`, is kept and found again by numba.
+    """
+    address = _address(function, lambda: _without_numba(function, declared()))
+    if address is not None:
+        return address, function
+    from sailviz.compiled.compiling import compile_by_numba
+
+    return compile_by_numba(function, declared())
+
+
+def _without_numba(function: Callable[..., None], signature: Any) -> MachineCode | None:
+    from numba.core.errors import NumbaError
+
+    from sailviz.compiled.compiling import compile_native
+
+    try:
+        return compile_native(function, signature)
+    except NumbaError:  # told by numba when it compiles the function in its own way
+        return None
+
+
+def _address(function: Callable[..., Any], make: Callable[[], MachineCode | None]) -> int | None:
+    """Address of machine code from the disk, or else made and kept there; None where it does not do without numba."""
+    try:
+        found = machine_code.kept(function)
+        if found is not None:
+            return machine_code.load(found)
+        made = make()
+        if made is None:
+            return None
+        address = machine_code.load(made)
+    except CannotLoadError:
+        return None
+    machine_code.keep(function, made)
+    return address
+
+
+@cache
+def _memory_is_as_expected() -> bool:
+    """Whether tuples, floats and numpy's arrays lie in memory as compiled code reads them (`unpacking`)."""
+    from sailviz.compiled import memory
+
+    return memory.is_as_expected()

@@ -1,0 +1,49 @@
+"""How tuples, floats and numpy's arrays lie in memory: what compiled code reads of them. Places in bytes."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+from typing import Any
+
+import numpy as np
+
+HEAD = object.__basicsize__  # of every object; its last word is the type
+TYPE = HEAD - 8
+ITEMS = tuple.__basicsize__
+NUMBER = HEAD  # of a float
+DATA, AXES, SHAPE, STRIDES, DTYPE, FLAGS = HEAD, HEAD + 8, HEAD + 16, HEAD + 24, HEAD + 40, HEAD + 48  # of an array
+LETTER, ORDER, SIZE = HEAD + 8, HEAD + 10, HEAD + 24  # of a dtype: its kind, its byte order, the size of an item
+C_ORDER, ALIGNED, WRITEABLE = 0x1, 0x100, 0x400  # flags of an array
+
+
+def is_as_expected() -> bool:
+    """Whether that holds here: looked up in a few objects whose content is known. Reads nothing beyond them."""
+    if sys.implementation.name != "cpython" or ctypes.sizeof(ctypes.c_void_p) != 8 or sys.byteorder != "little":
+        return False
+    if np.ndarray.__basicsize__ < FLAGS + 4 or np.dtype.__basicsize__ < SIZE + 8:
+        return False
+    array, number = np.zeros((3, 5)), 0.625
+    pair = (array, number)
+    address, real, whole, byte = id(array), ctypes.c_double, ctypes.c_int64, ctypes.c_char
+    dtype = _read(address + DTYPE, whole)
+    return (
+        _read(id(pair) + ITEMS, whole) == address
+        and _read(id(pair) + ITEMS + 8, whole) == id(number)
+        and _read(id(number) + TYPE, whole) == id(float)
+        and _read(id(number) + NUMBER, real) == number
+        and _read(address + TYPE, whole) == id(np.ndarray)
+        and _read(address + DATA, whole) == array.ctypes.data
+        and _read(address + AXES, ctypes.c_int) == 2
+        and [_read(_read(address + SHAPE, whole) + 8 * i, whole) for i in range(2)] == [3, 5]
+        and [_read(_read(address + STRIDES, whole) + 8 * i, whole) for i in range(2)] == [40, 8]
+        and dtype == id(array.dtype)
+        and _read(dtype + LETTER, byte) == b"f"
+        and _read(dtype + ORDER, byte) == b"="
+        and _read(dtype + SIZE, whole) == 8
+        and _read(address + FLAGS, ctypes.c_int) & 0x501 == C_ORDER | ALIGNED | WRITEABLE
+    )
+
+
+def _read(address: int, kind: Any) -> Any:
+    return kind.from_address(address).value

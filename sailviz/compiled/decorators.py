@@ -49,10 +49,7 @@ class Late:
     def _numba_type_(self) -> Any:
         from numba.core.registry import cpu_target
 
-        made = self.bare
-        cpu_target.typing_context.refresh()  # an intrinsic may be new to numba
-        cpu_target.target_context.refresh()
-        return cpu_target.typing_context.resolve_value_type(made)
+        return cpu_target.typing_context.resolve_value_type(self.bare)
 
     def __call__(self, *arguments: Any) -> Any:
         return self.made(*arguments)
@@ -114,9 +111,20 @@ def stamp(made: Any) -> None:
         file._source_stamp = (file._source_stamp, sources())
 
 
-def late(module: str, name: str) -> Late:
-    """What only compiled code uses, an intrinsic above all, from a module that is imported when code is compiled."""
-    return Late(lambda: getattr(import_module(module), name))
+def late(module: str, name: str, *arguments: Any) -> Late:
+    """What only compiled code uses, an intrinsic above all, from a module that is imported when code is compiled; or
+    with arguments, what a function there makes of them."""
+
+    def make() -> Any:
+        made = getattr(import_module(module), name)
+        made = made(*arguments) if arguments else made
+        from numba.core.registry import cpu_target
+
+        cpu_target.typing_context.refresh()  # it may be new to numba
+        cpu_target.target_context.refresh()
+        return made
+
+    return Late(make)
 
 
 def is_compiled(function: Any) -> bool:

@@ -98,6 +98,29 @@ def call_at(typing, address, own, t, x, y, z, vx, vy, vz, m, nx, ny, nz, p, numb
     return types.UniTuple(types.float64, 4)(types.int64, types.int64, *numbers, p, types.float64), generate
 
 
+def weighted_rows(terms):
+    """An intrinsic of (array, j): the sum over terms (row, coefficient) of coefficient * array[row, j], from left to
+    right. j is not negative."""
+
+    @intrinsic
+    def total(typing, rows, j):
+        def generate(context, builder, signature, arguments):
+            array = context.make_array(signature.args[0])(context, builder, arguments[0])
+            columns = builder.extract_value(array.shape, 1)
+            fast = ("contract", "nsz")  # as OPTIONS of sailviz.compiled
+            so_far = None
+            for row, coefficient in terms:
+                place = builder.add(builder.mul(columns, ir.Constant(WORD, row)), arguments[1])
+                value = builder.load(builder.gep(array.data, [place], source_etype=REAL), typ=REAL)
+                product = builder.fmul(ir.Constant(REAL, coefficient), value, flags=fast)
+                so_far = product if so_far is None else builder.fadd(so_far, product, flags=fast)
+            return so_far
+
+        return types.float64(rows, types.int64), generate
+
+    return total
+
+
 @intrinsic
 def weighted_sums(typing, history, newest):
     """The twelve sums over the accelerations up to row newest that a Gauss-Jackson step needs: x, y, z of POSITION,

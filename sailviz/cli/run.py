@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sailviz.cli.outputs import file_at, file_or_folder, make_folder
+from sailviz.cli.run_together import DEFAULT, check_asked, run_together
 from sailviz.cli.shared import (
     EXPECTATION_FAILED,
     Failures,
@@ -22,6 +23,7 @@ from sailviz.cli.shared import (
     time_limit_option,
     values_of,
 )
+from sailviz.cli.together import name_option
 from sailviz.errors import PropagationError, TimeLimitError
 
 if TYPE_CHECKING:
@@ -42,6 +44,10 @@ if TYPE_CHECKING:
 @click.option(
     "--connect", metavar="URL", help="Send it to a viewer that runs already, e.g. rerun+http://host:9876/proxy."
 )
+@click.option(
+    "--together", is_flag=True, help="Record scenes of one family in one picture, together.rrd unless -o is given."
+)
+@name_option
 @time_limit_option("End each scene after so much wall time; what was recorded until then stays.")
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
 @click.option("--json", "as_json", is_flag=True, help="Print a summary that a script can read.")
@@ -52,6 +58,8 @@ def run(
     view: bool,
     web: bool,
     connect: str | None,
+    together: bool,
+    names: tuple[str, ...],
     time_limit: float | None,
     quiet: bool,
     as_json: bool,
@@ -60,16 +68,27 @@ def run(
 
     SCENE is a TOML file or the name of a shipped scene. Without -o, --view, --web or --connect the recording goes to
     NAME.rrd in the current folder.
+
+    With --together flights of one family, about one body, are drawn in one picture, each in its own colour and called
+    after its scene or by --name, with how far they are from the first one. They are recorded once all have flown.
     """
     if view + web + (connect is not None) > 1:
         raise click.UsageError("--view, --web and --connect exclude each other.")
-    if output == "-" and (len(scenes) > 1 or view or web or connect is not None or as_json):
-        raise click.UsageError("-o - takes one scene and no viewer, and leaves no room for --json.")
-    if len(scenes) > 1 and output and Path(output).suffix:
+    called = check_asked(scenes, names, output) if together else []
+    if names and not together:
+        raise click.UsageError("--name is for several flights in one picture, with --together.")
+    if output == "-" and ((len(scenes) > 1 and not together) or view or web or connect is not None or as_json):
+        raise click.UsageError("-o - takes one recording and no viewer, and leaves no room for --json.")
+    if len(scenes) > 1 and not together and output and Path(output).suffix:
         raise click.UsageError("-o names one file, but there are several scenes: give a folder.")
     quiet = quiet or as_json or output == "-"
     values = values_of(settings)
     with collecting_failures(as_json) as failures:
+        if together:
+            with failures.next("together"):
+                sinks = _sinks(DEFAULT, output, view, web, connect)
+                run_together(scenes, called, values, sinks, failures, quiet, time_limit)
+            return
         for name in scenes:
             with failures.next(name):
                 sinks = _sinks(name, output, view, web, connect)
@@ -128,7 +147,7 @@ def _run_one(
         "ended": ended,
         "recording": [str(path) for path in recorded.paths],
         "identity": recorded.identity,
-        "expectations": [_facts(verdict) for verdict in verdicts],
+        "expectations": [verdict_facts(verdict) for verdict in verdicts],
     }
     failures.summary(facts)
     if not quiet:
@@ -175,7 +194,7 @@ def _flown(
     return recorder, rows, ended
 
 
-def _facts(verdict: Verdict) -> dict[str, Any]:
+def verdict_facts(verdict: Verdict) -> dict[str, Any]:
     """A verdict for JSON, which has no NaN."""
     return {
         "quantity": verdict.quantity,
@@ -190,7 +209,7 @@ def _facts(verdict: Verdict) -> dict[str, Any]:
 def _tell(facts: dict[str, Any], verdicts: list[Verdict], remarks: tuple[str, ...]) -> None:
     tell_flight(facts["title"], facts["duration_s"], facts["rows"], facts["ended"], verdicts, remarks)
     for path in facts["recording"]:
-        click.echo(f"Recorded {path}; look at it with: {_rerun()} {path}")
+        click.echo(f"Recorded {path}; look at it with: {rerun_command()} {path}")
 
 
 def tell_flight(
@@ -207,7 +226,7 @@ def tell_flight(
         click.echo(table(verdicts))
 
 
-def _rerun() -> str:
+def rerun_command() -> str:
     """How this person calls the viewer: by its name if the shell finds it, else by its path."""
     import shutil
 

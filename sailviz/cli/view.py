@@ -5,13 +5,24 @@ from __future__ import annotations
 import click
 
 from sailviz.cli.shared import collecting_failures, files_argument
+from sailviz.cli.together import check_asked_for, check_files, name_option, one_picture, together_option
 
 
 @click.command()
 @files_argument
-def view(files: tuple[str, ...]) -> None:
-    """Open recordings in the native viewer."""
-    from sailviz.recording.views.viewers import open_viewer
+@together_option
+@name_option
+def view(files: tuple[str, ...], together: bool | None, names: tuple[str, ...]) -> None:
+    """Open recordings in the native viewer.
 
+    Several flights of one family, about one body, are shown in one picture, each in its own colour and called after its
+    file or by --name; --apart shows each by itself, as are those that cannot be put together.
+    """
+    from sailviz.recording.views.viewers import check_screen, open_viewer
+
+    check_asked_for(files, together, names)
     with collecting_failures() as failures, failures.next():
-        open_viewer(*files)
+        check_files(files)
+        check_screen()
+        with one_picture(files, together, names) as shown:
+            open_viewer(*shown)

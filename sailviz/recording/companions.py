@@ -100,7 +100,7 @@ def name_faults(names: Sequence[object]) -> list[str]:
         if not isinstance(name, str) or not name.strip():
             faults.append(f"{name!r} is no name" if not isinstance(name, str) else "a name is empty")
         elif not NAME.fullmatch(name) or name != name.strip():
-            faults.append(f"the name {shortened(repr(name))} is not {WELL_MADE}")
+            faults.append(f"the name {shortened(repr(name))} has to be {WELL_MADE}")
         elif len(name) > LONGEST:
             faults.append(f"the name {shortened(name)} has {len(name)} letters, {LONGEST} at most are read in space")
     count = Counter(word(name) for name in names if isinstance(name, str))
@@ -108,7 +108,7 @@ def name_faults(names: Sequence[object]) -> list[str]:
         alike = list(dict.fromkeys(str(name) for name in names if isinstance(name, str) and word(name) == same))
         both = " and ".join(map(shortened, alike))
         faults.append(f"{both} are taken for one name" if len(alike) > 1 else f"two flights are called {both}")
-    return faults
+    return list(dict.fromkeys(faults))
 
 
 def check_runs(runs: Mapping[str, Run]) -> None:

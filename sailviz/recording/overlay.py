@@ -13,6 +13,11 @@ from sailviz.run.arrays import Run
 
 
 def record_together(runs: Mapping[str, Run], sink: Sink, *more_sinks: Sink) -> Recorded:
+    """`recorded_together`, and where it is for the browser serve it until Ctrl-C."""
+    return served(recorded_together(runs, sink, *more_sinks))
+
+
+def recorded_together(runs: Mapping[str, Run], *sinks: Sink) -> Recorded:
     """Record runs by name in one picture; sinks as in `record`.
 
     All are of one family and about one body. The first decides frame, unit, camera and clock; its numbers stand where
@@ -23,7 +28,6 @@ def record_together(runs: Mapping[str, Run], sink: Sink, *more_sinks: Sink) -> R
     first = next(iter(runs.values()))
     for companion in overlay.companions:
         timelines.check_duration(companion.shown)
-    with Recorder(sink, *more_sinks, overlay=overlay) as recorder:
+    with Recorder(*sinks, overlay=overlay) as recorder:
         recorder.add(replace(first, setting=overlay.setting))
-        recorded = recorder.finish()
-    return served(recorded)
+        return recorder.finish()

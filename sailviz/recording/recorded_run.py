@@ -129,8 +129,10 @@ def references_of(recording: Recording, length: float) -> tuple[Reference, ...]:
             points = length / larger * strip_of(recording, name)
             found.append(Reference(words_of(line[1]), role, points))
             planet = found[-1].name.removeprefix("orbit of ")
-            if role == "target" and f"/world/planets/{planet}/body" in recording:
-                found.append(Reference(planet, "planet", points))  # whose own ring is then not drawn
+            body = f"/world/planets/{planet}/body"
+            if role == "target" and body in recording:  # a planet without a date, whose own ring is then not drawn
+                far = length * float(np.linalg.norm(recording[body]["positions"][0]))
+                found.append(Reference(planet, "planet", points * far / np.linalg.norm(points, axis=1).mean()))
     return tuple({(each.name, each.role): each for each in found}.values())
 
 

@@ -90,6 +90,15 @@ def test_the_same_flights_give_the_same_digest(both, tmp_path):
     assert digest(both) == digest(again)
 
 
+def test_a_moment_of_a_picture_lies_between_the_first_and_the_last_row_of_all_flights(tmp_path):
+    from sailviz.recording.views.instant import fraction_of
+
+    path = tmp_path / "dated.rrd"
+    record_together({"a": ring(epoch="2031-03-01"), "b": ring(1.1 * AU, epoch="2031-01-30", days=500)}, path)
+    assert fraction_of(path, "0d") == pytest.approx(30 / 500)
+    assert fraction_of(path, "400d") == pytest.approx(430 / 500)
+
+
 def test_info_names_the_flights(both):
     from sailviz.recording import info
     from sailviz.recording.views.info import in_words
@@ -143,7 +152,7 @@ def test_every_fault_of_the_names_is_told_at_once(tmp_path):
     text = str(caught.value)
     for part in (
         "a name is empty",
-        "'*bold*' is not",
+        "'*bold*' has to be",
         "a b and a_b are taken for one name",
         "has 25 letters",
         "' lead'",

@@ -106,8 +106,8 @@ def absent_words(flights: Sequence[Flight], flight: Flight) -> list[str]:
 
 
 def higher_words(first: Flight, other: Flight) -> list[str]:
-    """How much higher or lower another flight is, by the altitudes that the line tells; "" where it does not fly."""
-    own, theirs = first.story.altitude, altitude_at(other, first.story.time)
+    """How much higher or lower another flight is, by their mean altitudes; "" where it does not fly."""
+    own, theirs = (altitude_at(flight, first.story.time) for flight in (first, other))
     words = []
     for off in ((theirs - own) / 1e3).tolist():
         if not np.isfinite(off):
@@ -162,14 +162,14 @@ def farthest_words(flights: Sequence[Flight]) -> list[str]:
     """How far each companion gets from the first flight, or of low orbits how much higher or lower, and when."""
     first, *others = flights
     begin, end = span_of(flights)
-    low = first.story.frame.low
+    low, time = first.story.frame.low, first.story.time
     found = []
     for flight in others[:NAMED]:
-        off = altitude_at(flight, first.story.time) - first.story.altitude if low else apart(first, flight)
+        off = altitude_at(flight, time) - altitude_at(first, time) if low else apart(first, flight)
         if not np.isfinite(off).any():
             continue
         row = int(np.nanargmax(np.abs(off)))
-        far, when = float(off[row]), on_day(float(first.story.time[row]) - begin, end - begin)
+        far, when = float(off[row]), on_day(float(time[row]) - begin, end - begin)
         size, unit = (1e3, "km") if low else apart_unit(first, abs(far))
         told = f"**{abs(far) / size:.{digits(abs(far) / size)}f} {unit}**"
         way = "away" if not low else "higher" if far > 0 else "lower"

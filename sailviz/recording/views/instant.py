@@ -35,7 +35,8 @@ def moment(text: Moment) -> float | tuple[float, str]:
 
 
 def fraction_of(path: FilePath, at: Moment) -> float:
-    """Where a moment lies in a recording: 0 at its first row, 1 at its last."""
+    """Where a moment lies in a recording: 0 at its first row, 1 at its last; of several flights at those of any, a time
+    counted from the start of the first of them."""
     wanted = moment(at)
     if isinstance(wanted, float):
         return wanted
@@ -44,7 +45,8 @@ def fraction_of(path: FilePath, at: Moment) -> float:
     if "/state" not in recording or not len(recording["/state"]["time_s"]):
         raise RecordingError(f"{path} has no times of a run; give a fraction instead of {words}")
     time = recording["/state"]["time_s"]
-    first, last = float(time[0]), float(time[-1])
+    clocks = [time, *(recording[f"{f.path}/state"]["time_s"] + f.start for f in recording.flights[1:])]
+    first, last = min(float(each[0]) for each in clocks), max(float(each[-1]) for each in clocks)
     if not first <= seconds <= last:
         raise RecordingError(f"{words} lies outside the run, which goes from {duration(first)} to {duration(last)}")
     return (seconds - first) / (last - first) if last > first else 0.0

@@ -10,7 +10,7 @@ import numpy as np
 from . import push, system
 from .facts import AU, DAY, planet_place
 from .measure import hue, on_ring, same_number, same_place
-from .now import PARTS, heights, told
+from .now import PARTS, told
 from .plots import convert, unit_of, view_of
 from .seen import home, shown
 
@@ -332,7 +332,7 @@ def about_another(f, row, words, begin):
         assert time < edge if gone.group(1) == "starts" else time > edge
         told(gone.group(3), (edge - begin) / unit_size(gone.group(2)))
     else:
-        off = np.interp(time, other.truth.clock, QUANTITIES["altitude"](other)) - heights(f)[row]
+        off = np.interp(time, other.truth.clock, QUANTITIES["altitude"](other)) - QUANTITIES["altitude"](f)[row]
         if high:
             assert (off > 0) == (high.group(2) == "higher")
             told(high.group(1), abs(off) / 1e3)
@@ -355,4 +355,9 @@ def about(f, entity):
         other = next(g for g in f.all if g.called == called)
         off = np.linalg.norm(hermite(other, f.truth.clock) - f.truth.position, axis=1)
         told(far, np.nanmax(off) / LENGTHS[unit])
+    for called, far, way in re.findall(r"^- (.*?) at most \*\*([\d.]+) km\*\* (higher|lower)", text, re.MULTILINE):
+        other, high = next(g for g in f.all if g.called == called), QUANTITIES["altitude"]
+        off = np.interp(f.truth.clock, other.truth.clock, high(other), left=np.nan, right=np.nan) - high(f)
+        told(far, np.nanmax(np.abs(off)) / 1e3)
+        assert (off[np.nanargmax(np.abs(off))] > 0) == (way == "higher")
     assert len(re.findall(r"at most \*\*", text)) == min(len(f.all) - 1, 2)

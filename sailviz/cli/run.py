@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -23,6 +22,7 @@ from sailviz.cli.shared import (
     time_limit_option,
     values_of,
 )
+from sailviz.cli.telling import rerun_command, tell_flight, verdict_facts
 from sailviz.cli.together import name_option
 from sailviz.errors import PropagationError, TimeLimitError
 
@@ -194,46 +194,10 @@ def _flown(
     return recorder, rows, ended
 
 
-def verdict_facts(verdict: Verdict) -> dict[str, Any]:
-    """A verdict for JSON, which has no NaN."""
-    return {
-        "quantity": verdict.quantity,
-        "at": verdict.at,
-        "expected": verdict.expected,
-        "within": verdict.tolerance,
-        "measured": None if verdict.measured != verdict.measured else verdict.measured,
-        "passed": verdict.passed,
-    }
-
-
 def _tell(facts: dict[str, Any], verdicts: list[Verdict], remarks: tuple[str, ...]) -> None:
     tell_flight(facts["title"], facts["duration_s"], facts["rows"], facts["ended"], verdicts, remarks)
     for path in facts["recording"]:
         click.echo(f"Recorded {path}; look at it with: {rerun_command()} {path}")
-
-
-def tell_flight(
-    title: str, seconds: float, rows: int, ended: str, verdicts: list[Verdict], remarks: tuple[str, ...] = ()
-) -> None:
-    """Say how long a flight was, what ended it, what its rows do not tell and what became of what its scene expects."""
-    from sailviz.checks.expectations import table
-    from sailviz.words import duration
-
-    click.echo(f"{title}: {duration(seconds)}, {rows:,} rows" + (f", ended by {ended}" if ended else ""))
-    for remark in remarks:
-        click.echo(remark)
-    if verdicts:
-        click.echo(table(verdicts))
-
-
-def rerun_command() -> str:
-    """How this person calls the viewer: by its name if the shell finds it, else by its path."""
-    import shutil
-
-    if shutil.which("rerun"):
-        return "rerun"
-    beside = Path(sys.executable).with_name("rerun")
-    return os.path.relpath(beside) if Path.cwd() in beside.parents else str(beside)
 
 
 def _say_unfinished(recorder: Recorder) -> None:

@@ -10,6 +10,7 @@ import click
 
 from sailviz.cli.outputs import is_folder
 from sailviz.cli.shared import EXPECTATION_FAILED, Failures, progress_bar, say_if_compiling
+from sailviz.cli.telling import rerun_command, tell_flight, verdict_facts
 from sailviz.cli.together import flight_names, refuse_names
 from sailviz.errors import RecordingError
 
@@ -62,8 +63,6 @@ def run_together(
         failures.summary(each)
         _judge(each, judged, failures, quiet)
     if not quiet:
-        from sailviz.cli.run import rerun_command
-
         for file in recorded.paths:
             click.echo(f"Recorded {file}; look at it with: {rerun_command()} {file}")
     if recorded.url:
@@ -111,8 +110,6 @@ def _flown(scene: Scene, quiet: bool, time_limit: float | None) -> tuple[Run, li
 
 
 def _summary(path: str, name: str, scene: Scene, run: Run, verdicts: list[Verdict]) -> dict[str, Any]:
-    from sailviz.cli.run import verdict_facts
-
     return {
         "scene": path,
         "name": name,
@@ -128,8 +125,6 @@ def _summary(path: str, name: str, scene: Scene, run: Run, verdicts: list[Verdic
 
 def _judge(facts: dict[str, Any], verdicts: list[Verdict], failures: Failures, quiet: bool) -> None:
     """Tell a flight and its verdicts, and remember whether one has failed."""
-    from sailviz.cli.run import tell_flight
-
     if not quiet:
         title = f"{facts['name']}: {facts['title']}"
         tell_flight(title, facts["duration_s"], facts["rows"], facts["ended"], verdicts)

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sailviz.cli.numbers import PORT
-from sailviz.cli.run import tell_flight
 from sailviz.cli.shared import (
     collecting_failures,
     progress_bar,
@@ -23,6 +22,7 @@ from sailviz.cli.shared import (
     time_limit_option,
     values_of,
 )
+from sailviz.cli.telling import tell_flight
 from sailviz.errors import PropagationError, RecordingError, SceneError, TimeLimitError
 
 if TYPE_CHECKING:

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-from typing import BinaryIO
+import json
+import struct
+from typing import Any, BinaryIO
 
 import numpy as np
 
 from sailviz.shapes.primitives import Trimesh, sheet, trimesh
+
+LONG, SHORT = 5125, 5123  # of whole numbers without a sign, as glTF calls them
 
 
 class FlatMesh(Trimesh):
@@ -61,4 +65,38 @@ def globe(map_jpeg: bytes, rows: int = 48, columns: int = 96) -> bytes:
     visual = trimesh.visual.TextureVisuals(uv=uv, material=material)
     mesh = FlatMesh(ball.vertices, ball.faces, visual=visual, process=False)
     content: bytes = trimesh.exchange.gltf.export_glb(mesh.scene(), include_normals=True)
-    return content
+    return short_indices(content)
+
+
+def parts_of(glb: bytes) -> tuple[dict[str, Any], list[bytes]]:
+    """What a binary glTF file says of itself, and the parts of its content, one for each of its views."""
+    size = int.from_bytes(glb[12:16], "little")
+    described, content = json.loads(glb[20 : 20 + size]), glb[20 + size + 8 :]
+    return described, [content[view.get("byteOffset", 0) :][: view["byteLength"]] for view in described["bufferViews"]]
+
+
+def joined(described: dict[str, Any], parts: list[bytes]) -> bytes:
+    """A binary glTF file of such parts, whatever their lengths are now."""
+    packed = b""
+    for view, part in zip(described["bufferViews"], parts, strict=True):
+        view |= {"byteOffset": len(packed), "byteLength": len(part)}
+        packed += part + bytes(-len(part) % 4)
+    described["buffers"][0]["byteLength"] = len(packed)
+    text = json.dumps(described).encode()
+    text += b" " * (-len(text) % 4)
+    head = struct.pack("<4sII", b"glTF", 2, 12 + 8 + len(text) + 8 + len(packed)) + struct.pack(
+        "<I4s", len(text), b"JSON"
+    )
+    return head + text + struct.pack("<I4s", len(packed), b"BIN\0") + packed
+
+
+def short_indices(glb: bytes) -> bytes:
+    """The same with corners counted in two bytes, of which trimesh takes four; up to 65,535 of them."""
+    described, parts = parts_of(glb)
+    for accessor in described["accessors"]:
+        if accessor["componentType"] == LONG:
+            view = accessor["bufferView"]
+            corners = np.frombuffer(parts[view], np.uint32)
+            if corners.max() < 0xFFFF:
+                parts[view], accessor["componentType"] = corners.astype(np.uint16).tobytes(), SHORT
+    return joined(described, parts)

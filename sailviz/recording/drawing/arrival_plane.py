@@ -18,7 +18,7 @@ from sailviz.recording.drawing.log import Color, Index, Picture, f4
 from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import EnsembleStatistics, Setting
 
-RING = 49  # points of an ellipse
+RING = 33  # points of an ellipse
 SIGMAS = (1.0, 2.0, 3.0)
 BOX = 1.0, 0.5  # half width and half height of the plane of arrival, in which its axes are stretched to fit
 NARROW = 1e-6  # rad: the least that a plane of arrival is wide

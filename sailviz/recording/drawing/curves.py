@@ -24,8 +24,8 @@ from sailviz.recording.drawing.samples import Frame
 from sailviz.run import gaps
 from sailviz.run.arrays import Run, Setting
 
-PLOT_ROWS = 3000
-FAR_ROWS = 1200  # where rows are far apart on their orbit: there are many curves of years
+PLOT_ROWS = 1600  # a plot is some 560 pixels wide
+FAR_ROWS = 1010  # where rows are far apart on their orbit: there are many curves of years
 MOST_BINS, ROWS_IN_BIN = 400, 8
 BAND_TURNS = 40.0  # revolutions from which a swing within one is a solid block
 SWING = 0.04  # of the whole range, within a bin, from which a curve is a band

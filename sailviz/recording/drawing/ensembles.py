@@ -23,7 +23,6 @@ from sailviz.run.arrays import EnsembleStatistics, Setting
 PIECE = 3  # rows of an ensemble in one piece of its paths
 BENT = 0.8  # rad that an ellipse may reach along the orbit to be drawn in space
 PATHS = 40  # of an ensemble that are drawn
-AWAY, INSIDE = 0.05, 0.86  # of the reach, from where an ensemble has a name of its own, and where that stands
 
 
 def log_ensembles(picture: Picture, setting: Setting, frame: Frame) -> dict[str, Span]:
@@ -43,23 +42,9 @@ def log_ensembles(picture: Picture, setting: Setting, frame: Frame) -> dict[str,
         for arrival in arrivals:
             log_arrival(picture, arrival, ensemble, index, color)
     log_bars(picture, setting, words)
-    log_widest(picture, setting, words, frame.unit)
     log_nominal(picture, setting, frame.unit)
     paths = [f"/world/cloud/{word(ensemble.name)}/flights" for ensemble in setting.ensembles]
     return dict.fromkeys([*paths, "/world/nominal/path"], SO_FAR)
-
-
-def log_widest(picture: Picture, setting: Setting, words: dict[str, str], length: float) -> None:
-    """The name of the widest ensemble where it is, once it has left the calm flight."""
-    widest = max(setting.ensembles, key=lambda ensemble: ensemble.end_deviation[0])
-    mean, calm = (widest.places(states) / length for states in (widest.mean, widest.nominal))
-    reach = float(np.linalg.norm(calm, axis=1).max())
-    away = np.linalg.norm(mean - calm, axis=1) > AWAY * reach
-    picture.log_label_style(
-        "/world/cloud_name", style.ensemble_color(words[widest.name]), f"flights with {widest.name}"
-    )
-    place = np.where(away[:, None], INSIDE * mean, np.nan)
-    picture.log_labels("/world/cloud_name", index_of(setting, widest), place)
 
 
 def index_of(setting: Setting, ensemble: EnsembleStatistics, some: slice | np.ndarray = slice(None)) -> Index:
@@ -100,7 +85,7 @@ def log_ellipses(picture: Picture, ensemble: EnsembleStatistics, index: Index, c
 
 
 def log_nominal(picture: Picture, setting: Setting, length: float) -> None:
-    """The flight without wind, which all ensembles share: its path so far, its place and its name."""
+    """The flight without wind, which all ensembles share: its path so far and its place."""
     ensemble = setting.ensembles[0]
     line, index = ensemble.places(ensemble.nominal) / length, index_of(setting, ensemble)
     picture.log_strip_style("/world/nominal/path", style.NOMINAL, style.WIDTH["nominal"])
@@ -110,6 +95,3 @@ def log_nominal(picture: Picture, setting: Setting, length: float) -> None:
     picture.log_broken_strips("/world/nominal/path", index_of(setting, ensemble, ends), strips)
     picture.log_static("/world/nominal/place", rr.Points3D.from_fields(radii=points(3.4), colors=[style.NOMINAL]))
     picture.log_columns("/world/nominal/place", index, rr.Points3D.columns(positions=f4(line)))
-    picture.log_label_style("/world/nominal/name", style.NOMINAL, "calm flight")
-    outwards = line * (1 + 0.10 * np.abs(line).max() / np.maximum(np.linalg.norm(line, axis=1), 1e-9))[:, None]
-    picture.log_labels("/world/nominal/name", index, outwards)

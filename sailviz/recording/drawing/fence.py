@@ -18,7 +18,7 @@ from sailviz.recording.drawing.log import Picture, f4
 from sailviz.recording.drawing.story import Story
 
 PIECES = 60
-ROWS = 1500  # of the wall, at most
+ROWS = 1010  # of the wall, at most
 ALONG = 0.35  # of the thrust: what is across the trail by less than this leans along it
 HIGH, RING_HIGH, LEAST_HIGH = 0.17, 0.11, 0.07  # of S, at the largest push
 MANY_TIMES = 3.0  # largest push over the median from which heights are roots

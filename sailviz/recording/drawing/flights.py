@@ -102,7 +102,7 @@ def log_flights(picture: Picture, flights: Sequence[Flight], size: float, names:
         story = flight.story
         off = -BESIDE * size if hangs(story, number) else OVER * size + 0.5 * style.RAISED * story.reach
         place = story.position + np.array([0.0, 0.0, off])
-        names.add(f"/world/names/flight/{word(flight.name)}", flight.name, flight.color, place, FLIGHT, story)
+        names.add(f"/world/names/flight/{word(flight.name)}", flight.name, flight.color, place, FLIGHT, story=story)
     return spans
 
 

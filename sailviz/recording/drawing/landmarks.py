@@ -22,7 +22,7 @@ from sailviz.recording.drawing.story import Story
 from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Event, Reference
 
-MARK, SUN, PLANET, CRAFT, TARGET_RING, RING = range(6)  # what matters more has the lower rank
+MARK, SUN, ENSEMBLE, PLANET, CRAFT, TARGET_RING, RING = range(7)  # what matters more has the lower rank
 MET = 0.12  # relative distance from a planet's orbit within which a flight starts or ends at it
 LARGER = 1.004  # a ring beside the trail: lines on one another tear
 MOST_EVENTS = 2  # named between start and end

@@ -98,9 +98,15 @@ class Picture:
         quaternion: ArrayLike | None = None,
         scale: ArrayLike | None = None,
     ) -> None:
-        """translation (n, 3), quaternion (n, 4) xyzw, scale (n, 3)."""
+        """translation (n, 3), quaternion (n, 4) xyzw, scale (n, 3); what never changes stands there once."""
         given = {"translation": translation, "quaternion": quaternion, "scale": scale}
         values: dict[str, Any] = {name: f4(value) for name, value in given.items() if value is not None}
+        if all(len(value) and np.all(value == value[0]) for value in values.values()):
+            still: dict[str, Any] = {name: value[0] for name, value in values.items()}
+            if quaternion is not None:
+                still["quaternion"] = rr.Quaternion(xyzw=still["quaternion"])
+            self.log_static(path, rr.Transform3D(**still))
+            return
         self.log_columns(path, index, rr.Transform3D.columns(**values))
 
     def log_arrow_style(self, path: str, color: Color, width: float) -> None:

@@ -20,6 +20,7 @@ from sailviz.recording.drawing.flights import Flight
 from sailviz.recording.drawing.layout import ALL, Space, Span
 from sailviz.recording.drawing.log import Color, Picture, f4
 from sailviz.recording.drawing.low_flights import in_front, log_low_flights, season
+from sailviz.recording.drawing.names import Names
 from sailviz.recording.drawing.orbit_plane import OrbitPlane, shell_words
 from sailviz.recording.drawing.phrases import push_words
 from sailviz.recording.drawing.planet import Planet
@@ -30,6 +31,7 @@ from sailviz.recording.drawing.style import points
 from sailviz.shapes import sails
 from sailviz.shapes.primitives import circle
 
+GROUND, DRAG, FLIGHT = range(3)  # names; what matters more has the lower rank
 LADDER = 12  # orbits that show a descent
 SATELLITE, SMALL = 0.062, 0.05  # size of a satellite with a tether, and with air alone, in radii of the planet
 FILM = 0.075  # side of a drag sail
@@ -37,6 +39,7 @@ TETHER, CLEARANCE = 0.075, 0.75  # length of a tether, and how much of the altit
 LEAST_TETHER = 0.004
 MANY = 7  # arrows along a tether
 LEAST, MORE = 0.035, 0.075  # length of a drag arrow, and what the root of its share of the largest adds
+UNBRAKED = 0.075  # behind the arrows, or the craft, where the drag is told
 TAIL = 0.9  # rad of the orbit behind the craft that are bright
 BESIDE = 1.0004  # radii: the tail lies over the ring
 EYE, TARGET = np.array([0.105, -0.085, 0.315]), (-0.066, -0.010, 0.0)  # riding along, radii of the planet
@@ -58,10 +61,12 @@ def log_low_orbit(
     Planet(picture, story.setting, "Sun" in run.bodies).add(story.samples)
     log_orbit(picture, story, *orbit_colors(story, flights))
     plane = log_plane(picture, story, flights)
-    log_craft(picture, story)
+    riding, names = riding_along(story), Names(story)
+    log_craft(picture, story, names)
+    names.write(picture, riding.camera)
     spans: dict[str, Span] = dict.fromkeys(("/world/plane/ladder", "/world/plane/rungs"), ALL) if plane else {}
     globe = log_globe_eye(picture, story, flights[0].color if flights else style.CRAFT)
-    tabs = [riding_along(story), from_afar(globe), *(descent(story) if plane else [])]
+    tabs = [riding, from_afar(globe), *(descent(story) if plane else [])]
     if flights:
         log_low_flights(picture, flights, np.array(globe.camera.position), plane)
         return tabs[::-1], globe, {}
@@ -109,10 +114,10 @@ def log_orbit(picture: Picture, story: Story, colors: np.ndarray, faint: np.ndar
     picture.log_strips("/world/tail", story.index, tails(story), colors)
 
 
-def tails(story: Story, count: int = 16) -> np.ndarray:
+def tails(story: Story, count: int = 14) -> np.ndarray:
     """The part of the orbit behind the craft, (n, count, 3)."""
     run, axes = story.samples.run, story.samples.axes
-    back = np.linspace(-TAIL, 0.0, count)
+    back = -TAIL * np.linspace(1.0, 0.0, count) ** 1.3  # closer to each other near the craft, where the eye is
     e = run.elements
     # the orbit's own distance there: r = p / (1 + e cos nu), with the anomaly of the drawn place
     radial = axes[..., 0]
@@ -142,7 +147,7 @@ def log_plane(picture: Picture, story: Story, flights: Sequence[Flight]) -> bool
     return True
 
 
-def log_craft(picture: Picture, story: Story) -> None:
+def log_craft(picture: Picture, story: Story, names: Names) -> None:
     """The satellite with its tether or its drag sail, what brakes it, the way it flies, the plumb line."""
     samples, craft, index = story.samples, story.craft, story.index
     count = len(samples)
@@ -166,14 +171,15 @@ def log_craft(picture: Picture, story: Story) -> None:
     else:
         log_drag_sail(picture, story)
     Glow(picture, "/world/rtn/body", craft).add(samples.index_of, samples.run.thrust.on)
-    log_drag(picture, story, tether)
+    log_drag(picture, story, tether, names)
     if np.any(samples.velocity_rtn):
         picture.log_static(
             "/world/rtn/flight",
             rr.Arrows3D(origins=[[0, 0.012, 0]], vectors=[[0, 0.085, 0]], colors=[style.SPEED], radii=points(1.6)),
         )
-        picture.log_label("/world/rtn/flight/name", "flies this way", style.SPEED, [0, 0.115, 0])
-    log_plumb(picture, story, tether)
+        spots = [np.array([up, 0.115, 0.0]) for up in (0.0, 0.022, -0.022)]
+        names.add("/world/rtn/flight/name", "flies this way", style.SPEED, spots[0], FLIGHT, spots[1:])
+    log_plumb(picture, story, tether, names)
     dot = rr.Points3D.from_fields(radii=points(5.5), colors=[style.CRAFT])
     picture.log_static("/world/craft", dot)
     picture.log_columns("/world/craft", index, rr.Points3D.columns(positions=f4(samples.position)))
@@ -201,7 +207,7 @@ def log_drag_sail(picture: Picture, story: Story) -> None:
     )
 
 
-def log_drag(picture: Picture, story: Story, tether: np.ndarray) -> None:
+def log_drag(picture: Picture, story: Story, tether: np.ndarray, names: Names) -> None:
     """Arrows against the flight: many along a tether, one of the air; with its number."""
     drag, most = story.drag, float(story.drag.max())
     if most <= 0:
@@ -218,10 +224,11 @@ def log_drag(picture: Picture, story: Story, tether: np.ndarray) -> None:
     picture.log_arrow_style("/world/rtn/drag", style.PUSH, style.WIDTH["many drags" if hanging else "drag"])
     columns = rr.Arrows3D.columns(origins=f4(origins.reshape(-1, 3)), vectors=f4(shown))
     picture.log_columns("/world/rtn/drag", story.index, columns.partition([len(places)] * count))
-    picture.log_label_style("/world/rtn/drag_name", style.PUSH)
     below = 0.55 if story.spin is None else 1.02  # out of the way of what turns
-    place = 1.25 * vectors - below * tether[:, None] * (samples.normal_rtn if hanging else axis)
-    picture.log_labels("/world/rtn/drag_name", story.index, place, drag_texts(story))
+    away = 0.75 * length + UNBRAKED if hanging else np.where(drag > 0, 1.25 * length, UNBRAKED)
+    back = np.where((drag > 0)[:, None], down, -samples.velocity_rtn)  # "no drag" stands off the craft as well
+    place = away[:, None] * back - below * tether[:, None] * (samples.normal_rtn if hanging else axis)
+    names.add("/world/rtn/drag_name", drag_texts(story), style.PUSH, place, DRAG)
 
 
 def drag_texts(story: Story) -> list[str]:
@@ -232,7 +239,7 @@ def drag_texts(story: Story) -> list[str]:
     return push_words(story.drag, story.drag_word)
 
 
-def log_plumb(picture: Picture, story: Story, tether: np.ndarray) -> None:
+def log_plumb(picture: Picture, story: Story, tether: np.ndarray, names: Names) -> None:
     """A line straight down to the ground, with the height there."""
     height = story.distance - 1
     zero = np.zeros_like(height)
@@ -245,6 +252,7 @@ def log_plumb(picture: Picture, story: Story, tether: np.ndarray) -> None:
     picture.log_static("/world/rtn/ground", ground)
     texts = [f"{h * story.frame.unit / 1e3:.0f} km" for h in height.tolist()]
     picture.log_columns("/world/rtn/ground", story.index, rr.Points3D.columns(positions=f4(foot), labels=texts))
+    names.add("", texts, style.CRAFT, foot, GROUND)
 
 
 def log_globe_eye(picture: Picture, story: Story, color: Color) -> Space:

@@ -30,7 +30,7 @@ class Planet:
     def __init__(self, picture: Picture, setting: Setting, day_and_night: bool):
         self._picture = picture
         log_planet(picture, "/world/center/globe", setting.body.name)
-        log_air(picture, "/world/center/air", ball(36, 72))
+        log_air(picture, "/world/center/air", ball(30, 60))
         if day_and_night:
             log_night(picture)
 
@@ -75,7 +75,7 @@ def log_night(picture: Picture) -> None:
     """Zones over the night side, darker and darker, and the umbra, +z away from the Sun, and an arrow of sunlight."""
     edges = [*NIGHT_EDGES, 0.0]
     for k, (outer, inner) in enumerate(pairwise(edges)):
-        zone = cap(outer, 24 if inner == 0 else 1, 96, inner, radius=NIGHT_RADIUS)
+        zone = cap(outer, 18 if inner == 0 else 1, 96, inner, radius=NIGHT_RADIUS)
         alpha = round(255 * min(1 - (1 - NIGHT_ALPHA) ** (k + 1), DARKEST))
         picture.log_mesh(f"/world/night/zone{k}", zone, [*style.NIGHT, alpha], shaded=False)
     picture.log_mesh("/world/night/umbra", tube(0.0, 2.6, 1.0, 1.0, 96), style.UMBRA, shaded=False)

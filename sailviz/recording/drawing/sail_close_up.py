@@ -15,6 +15,7 @@ from sailviz.recording.drawing.cameras import Camera
 from sailviz.recording.drawing.craft import Glow, log_stowing
 from sailviz.recording.drawing.layout import Space
 from sailviz.recording.drawing.log import Color, Picture, f4
+from sailviz.recording.drawing.names import Names
 from sailviz.recording.drawing.phrases import push_words
 from sailviz.recording.drawing.sky import log_stars
 from sailviz.recording.drawing.story import Story
@@ -30,7 +31,10 @@ SHORT, LONGER = 7.5, 4.5  # length of the push
 VELOCITY, PRIMER, NORMAL = 9.0, 9.0, 8.0
 ANGLE, ANGLE_NAME = 6.2, 7.4  # radii of the fan and of its number
 CLOCK = 7.0  # distance at which the clock angle's circle stands
-ARC = 13  # points of an arc
+ARC = 9  # points of an arc
+ROUND, ARC_ROUND = 31, 21  # points of the clock angle's circle, and of its arc
+PUSH, NUMBER, ARROW, FLOW = range(4)  # what matters more has the lower rank
+HIGH = {0: 380.0, 1: 380.0, 2: 315.0, 3: 260.0}  # pixels of the view
 ASPECT = {0: 590 / 380, 1: 590 / 380, 2: 590 / 315, 3: 590 / 260}  # of the view, by what stands below it; 3 is bars
 FILL = 0.78
 
@@ -41,27 +45,28 @@ def log_close_up(picture: Picture, story: Story, below: int) -> Space:
     log_stars(picture, "/sail/stars", 900.0, 500)
     log_body(picture, story)
     eye = eye_of(story)
-    length = push_length(story)
+    length, names = push_length(story), Names(story, (ASPECT[below] * HIGH[below], HIGH[below]))
     log_arrow(picture, story, "push", style.PUSH, length, style.WIDTH["close push"])
-    log_name(picture, story, "push", style.PUSH, beyond(length, eye, 2.6), push_words(story.push))
+    add_name(names, "push", style.PUSH, beyond(length, eye, 2.6), push_words(story.push), PUSH)
     velocity = VELOCITY * story.samples.velocity_rtn
     log_arrow(picture, story, "velocity", style.SPEED, velocity, style.WIDTH["close arrow"])
-    words = ["flies this way"] * len(story.time)
-    log_name(picture, story, "velocity", style.SPEED, beyond(velocity, eye, 1.0), words)
+    add_name(names, "velocity", style.SPEED, beyond(velocity, eye, 1.0), "flies this way", ARROW)
     if story.craft.flow_word and story.frame.sun:
-        log_flow(picture, story, eye)
+        log_flow(picture, story, eye, names)
     if story.craft.has_angles and (story.craft.facing or story.craft.slanted):
-        log_angle(picture, story)
+        log_angle(picture, story, names)
         if story.about("clock"):
-            log_clock(picture, story)
+            log_clock(picture, story, names)
     primer = story.samples.primer_rtn
     if primer is not None and story.about("primer"):
         log_arrow(picture, story, "primer", style.PRIMER, PRIMER * primer, style.WIDTH["close arrow"])
-        log_name(picture, story, "primer", style.PRIMER, beyond(PRIMER * primer, eye, 1.0), ["primer"] * len(primer))
+        add_name(names, "primer", style.PRIMER, beyond(PRIMER * primer, eye, 1.0), "primer", ARROW)
     at, target = cameras.fit(places_in_sight(story, length, velocity), eye, ASPECT[below], FILL)
     name = f"{story.craft.close_name or story.setting.craft.label or 'Craft'} close up"
     name += ": what pushes it" if story.most > 0 else ""
-    return Space(Camera(name, "/sail", tuple(at.tolist()), tuple(target.tolist())), ("+ /sail/**",))
+    camera = Camera(name, "/sail", tuple(at.tolist()), tuple(target.tolist()))
+    names.write(picture, camera)
+    return Space(camera, ("+ /sail/**",))
 
 
 def log_body(picture: Picture, story: Story) -> None:
@@ -89,11 +94,10 @@ def log_arrow(picture: Picture, story: Story, name: str, color: Color, vectors: 
         picture.log_arrows(f"/sail/{name}", story.index, vectors)
 
 
-def log_name(picture: Picture, story: Story, name: str, color: Color, place: np.ndarray, words: list[str]) -> None:
+def add_name(names: Names, name: str, color: Color, place: np.ndarray, words: str | list[str], rank: int) -> None:
     """A name beyond an arrow's tip."""
     if np.any(np.isfinite(place)):
-        picture.log_label_style(f"/sail/{name}_name", color)
-        picture.log_labels(f"/sail/{name}_name", story.index, place, words)
+        names.add(f"/sail/{name}_name", words, color, place, rank)
 
 
 def beyond(arrows: np.ndarray, eye: np.ndarray, gap: float) -> np.ndarray:
@@ -103,7 +107,7 @@ def beyond(arrows: np.ndarray, eye: np.ndarray, gap: float) -> np.ndarray:
     return np.where(there, arrows + gap * unit(flat), np.nan)
 
 
-def log_flow(picture: Picture, story: Story, eye: np.ndarray) -> None:
+def log_flow(picture: Picture, story: Story, eye: np.ndarray, names: Names) -> None:
     """Light that ends on the film and leaves it mirrored, or the wind through a wheel. No mirror is perfect: what is
     drawn is the direction, not how much."""
     film, normal = story.craft.facing, story.samples.normal_rtn
@@ -130,7 +134,9 @@ def log_flow(picture: Picture, story: Story, eye: np.ndarray) -> None:
         rays("/sail/mirrored", ends, np.repeat(MIRRORED * back, len(hits), axis=0), style.MIRRORED, 1.0)
     middle = starts.mean(0)
     top = unit(np.cross(eye, unit(np.cross([0.0, 0.0, 1.0], eye))))
-    picture.log_label("/sail/flow_name", flow_words(word), color, middle[np.argmax(middle @ top)] + 1.4 * top)
+    spots = [place + 1.4 * top for place in middle[np.argsort(-(middle @ top))]]
+    spots += [place - 0.5 * top for place in middle[np.argsort(middle @ top)]]
+    names.add("/sail/flow_name", flow_words(word), color, spots[0], FLOW, spots[1:])
 
 
 def flow_words(word: str) -> str:
@@ -138,7 +144,7 @@ def flow_words(word: str) -> str:
     return {"wind": "solar wind"}.get(word, word)
 
 
-def log_angle(picture: Picture, story: Story) -> None:
+def log_angle(picture: Picture, story: Story, names: Names) -> None:
     """The sail's angle as a fan on the sunward side, between the ray and the normal, with its number."""
     normal, index, count = story.samples.normal_rtn, story.index, len(story.time)
     picture.log_lines("/sail/radial", [[[-10, 0, 0], [11, 0, 0]]], style.RADIAL, style.WIDTH["helper"])
@@ -155,14 +161,13 @@ def log_angle(picture: Picture, story: Story) -> None:
     corners = np.concatenate([np.zeros((count, 1, 3)), fan], 1)
     columns = rr.Mesh3D.columns(vertex_positions=f4(corners.reshape(-1, 3))).partition([ARC + 1] * count)
     picture.log_columns("/sail/angle/fan", index, columns)
-    picture.log_label_style("/sail/angle/name", style.SUN)
     angles = np.degrees(story.samples.run.attitude.pitch)
     texts = [f"{angle:.0f}°" if np.isfinite(angle) else "" for angle in angles.tolist()]
     place = np.where(out_there[:, None], -ANGLE_NAME * directions[:, ARC // 2], np.nan)
-    picture.log_labels("/sail/angle/name", index, place, texts)
+    names.add("/sail/angle/name", texts, style.SUN, place, NUMBER)
 
 
-def log_clock(picture: Picture, story: Story) -> None:
+def log_clock(picture: Picture, story: Story, names: Names) -> None:
     """The clock angle: on a circle about the radial line, from the orbit's normal to the sail's."""
     attitude, index, length = story.samples.run.attitude, story.index, CLOCK * ~story.stowed
     pitch, clock = np.nan_to_num(attitude.pitch), np.nan_to_num(attitude.clock)
@@ -173,23 +178,22 @@ def log_clock(picture: Picture, story: Story) -> None:
         x = np.broadcast_to(axial[:, None], angle.shape)
         return np.stack([x, radius[:, None] * np.sin(angle), radius[:, None] * np.cos(angle)], -1)
 
-    full = np.tile(np.linspace(0, 2 * np.pi, 49), (len(story.time), 1))
+    full = np.tile(np.linspace(0, 2 * np.pi, ROUND), (len(story.time), 1))
     center = np.stack([axial, 0 * axial, 0 * axial], -1)[:, None]
     ends = [on_circle(0 * clock[:, None]), center, on_circle(clock[:, None])]
     for name, lines, color, width in (
         ("circle", on_circle(full), style.CLOCK_CIRCLE, style.WIDTH["helper"]),
         ("spokes", np.concatenate(ends, 1), style.CLOCK_CIRCLE, style.WIDTH["helper"]),
-        ("arc", on_circle(clock[:, None] * np.linspace(0, 1, 37)), style.QUANTITY["clock angle"], 1.8),
+        ("arc", on_circle(clock[:, None] * np.linspace(0, 1, ARC_ROUND)), style.QUANTITY["clock angle"], 1.8),
     ):
         picture.log_strip_style(f"/sail/clock/{name}", color, width)
         picture.log_strips(f"/sail/clock/{name}", index, lines)
-    picture.log_label_style("/sail/clock/name", style.QUANTITY["clock angle"])
     place = on_circle(0.5 * clock[:, None])[:, 0] * [1.0, 1.3, 1.3] + np.stack(
         [0 * axial, 0 * axial, 0 * axial + 0.6], -1
     )
     place = np.where(story.stowed[:, None], np.nan, place)
     texts = [f"clock {round(value) % 360}°" for value in np.degrees(clock).tolist()]
-    picture.log_labels("/sail/clock/name", index, place, texts)
+    names.add("/sail/clock/name", texts, style.QUANTITY["clock angle"], place, NUMBER)
 
 
 def eye_of(story: Story) -> np.ndarray:

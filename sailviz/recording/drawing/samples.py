@@ -17,8 +17,8 @@ from sailviz.recording import timelines
 from sailviz.run import gaps
 from sailviz.run.arrays import Run, Setting
 
-PICTURE_ROWS = 1500  # a replay of 30 s has about as many frames
-SPARSE_ROWS = 1200  # where the craft goes round slowly
+PICTURE_ROWS = 1010  # 33 in each second of a replay
+SPARSE_ROWS = 1010  # where the craft goes round slowly
 SPARSE = 1 / 12  # revolutions between drawn rows above which lines from row to row would be a zigzag
 TURNS = 30.0  # revolutions that are shown of a run whose rows are sparse
 PLANE_TURNS = 6.0  # revolutions round a planet from which a run shows the plane of its orbit

@@ -15,6 +15,7 @@ from sailviz.frames import quaternion, unit
 from sailviz.recording.contract import word
 from sailviz.recording.drawing import cameras, style
 from sailviz.recording.drawing.cameras import Camera
+from sailviz.recording.drawing.ensemble_names import add_ensemble_names
 from sailviz.recording.drawing.fence import Fence, fence_of, log_fence
 from sailviz.recording.drawing.flights import Flight, log_body, log_flights
 from sailviz.recording.drawing.ghosts import log_ghosts
@@ -29,7 +30,7 @@ from sailviz.recording.drawing.landmarks import (
 )
 from sailviz.recording.drawing.layout import ALL, SO_FAR, TO_COME, Space, Span
 from sailviz.recording.drawing.log import Picture, f4
-from sailviz.recording.drawing.names import Names
+from sailviz.recording.drawing.names import MAIN, MAIN_OVER_TABLE, Names
 from sailviz.recording.drawing.planet import Planet, about_axis
 from sailviz.recording.drawing.samples import orbits
 from sailviz.recording.drawing.sky import log_stars, log_sun
@@ -54,7 +55,8 @@ def log_system(
     """Write /world -> its views, the spans that they show of what is past and to come, and what is made up. flights :
     all that are drawn together, the first one first; then there are no walls nor still copies, which would hide them.
     """
-    found, fence, names = landmarks_of(story), None if flights else fence_of(story), Names(story)
+    found, fence = landmarks_of(story), None if flights else fence_of(story)
+    names = Names(story, MAIN_OVER_TABLE if story.setting.ensembles else MAIN)
     size = craft_size(story, bool(flights))
     log_backdrop(picture, story, names)
     log_references(picture, story, found)
@@ -70,6 +72,8 @@ def log_system(
     if np.any(turn):
         picture.log_pose("/world/pan", story.index, quaternion=about_axis(turn))
     log_landmarks(picture, story, found, first_eye(camera), names)
+    if story.setting.ensembles:
+        add_ensemble_names(story, names)
     add_push_name(story, size, turned(np.tile(first_eye(camera), (len(turn), 1)), -turn), names)
     names.write(picture, camera, turn)
     if story.frame.sparse:

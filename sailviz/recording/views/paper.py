@@ -8,9 +8,7 @@ given the colours beforehand that turning round makes right. Stars are left out.
 from __future__ import annotations
 
 import io
-import json
 import re
-import struct
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +17,7 @@ import rerun as rr
 
 from sailviz.recording.drawing import style
 from sailviz.recording.reader import FilePath, read
+from sailviz.shapes.planets import joined, parts_of
 
 WHITE_FROM = 0.925  # lightness of the viewer's own dark grounds, turned round: from there on paper is white
 DARKER = 0.2  # how much darker than turned round what is nearly black becomes, and half as much what is half as light
@@ -27,7 +26,6 @@ BODIES = re.compile(
     r"|/world/sun/(ball|glow)$|/globe/ball$|/world/night/zone\d+$|/world/ghosts/(lit|dark)$"
 )
 STARS = re.compile(r"/stars$")
-GLB = b"glTF"
 JPEG_QUALITY = 88
 
 
@@ -110,22 +108,11 @@ def map_before(glb: bytes) -> bytes:
     """A planet, a binary glTF file, whose map has the colours that turning round makes right."""
     from PIL import Image
 
-    size = int.from_bytes(glb[12:16], "little")
-    described, content = json.loads(glb[20 : 20 + size]), glb[20 + size + 8 :]
-    views, own = described["bufferViews"], described["images"][0]["bufferView"]
-    parts = [content[view.get("byteOffset", 0) :][: view["byteLength"]] for view in views]
+    described, parts = parts_of(glb)
+    own = described["images"][0]["bufferView"]
     out = io.BytesIO()
     Image.fromarray(before(np.asarray(Image.open(io.BytesIO(parts[own])).convert("RGB")))).save(
         out, "JPEG", quality=JPEG_QUALITY
     )
     parts[own] = out.getvalue()
-    packed = b""
-    for view, part in zip(views, parts, strict=True):
-        view |= {"byteOffset": len(packed), "byteLength": len(part)}
-        packed += part + bytes(-len(part) % 4)
-    described["buffers"][0]["byteLength"] = len(packed)
-    text = json.dumps(described).encode()
-    text += b" " * (-len(text) % 4)
-    whole = 12 + 8 + len(text) + 8 + len(packed)
-    head = struct.pack("<4sII", GLB, 2, whole) + struct.pack("<I4s", len(text), b"JSON")
-    return head + text + struct.pack("<I4s", len(packed), b"BIN\0") + packed
+    return joined(described, parts)

@@ -108,7 +108,7 @@ class Truth:
         self.steps, self.time = state.timeline("step"), state["time_s"]
         self.position, self.velocity = state["position_m"], state["velocity_m_s"]
         self.normal, self.quaternion = attitude["normal"], attitude["quaternion"]
-        self.pitch, self.cone, self.clock = (attitude[f"{name}_rad"] for name in ("pitch", "cone", "clock"))
+        self.pitch, self.cone, self.clock_angle = (attitude[f"{name}_rad"] for name in ("pitch", "cone", "clock"))
         self.thrust, self.on = thrust["acceleration_m_s2"], thrust["on"].astype(bool)
         self.elements = recording[f"{top}/elements"]
         self.environment = dict(recording[f"{top}/environment"]) if f"{top}/environment" in recording else {}

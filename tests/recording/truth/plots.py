@@ -199,7 +199,7 @@ def angles(f, entity, *_):
 def clock(f, entity, *_):
     """The clock angle, in whichever turn does not jump."""
     values, _ = drawn_series(f, entity)
-    off = np.radians(values[:, 0]) - f.truth.clock
+    off = np.radians(values[:, 0]) - f.truth.clock_angle
     assert np.array_equal(np.isnan(off), f.truth.stowed)
     off = off[~f.truth.stowed]
     assert np.abs(off - 2 * np.pi * np.round(off / (2 * np.pi))).max() < 1e-9

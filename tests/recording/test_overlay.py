@@ -201,3 +201,12 @@ def test_record_takes_runs_by_name_and_scenes_among_them(tmp_path):
         sailviz.record(runs={"one": run, "two": scene})
     with pytest.raises(TypeError, match="somewhere to put it"):
         sailviz.record(run)
+
+
+def test_the_words_of_many_flights_leave_out_what_there_is_no_room_for(tmp_path):
+    for count in (2, 5):
+        path = tmp_path / f"{count}.rrd"
+        record_together({f"flight {k}": ring((1 + 0.05 * k) * AU) for k in range(count)}, path)
+        (text,) = sailviz.read(path)["/about"]["text"].ravel()
+        assert ("at most" in str(text)) == (count == 2)
+        assert len([line for line in str(text).splitlines() if line.startswith("- **")]) == count

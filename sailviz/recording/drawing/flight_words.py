@@ -25,6 +25,7 @@ from sailviz.recording.drawing.story import Story
 from sailviz.run.moments import run_at
 
 NAMED = 2  # companions that are told one by one in the line of the moment
+ROOM = 3  # flights up to which there is room for more words than their names
 LEVEL = 0.5  # km of altitude below which two craft are as high
 COUNTS = {2: "Two", 3: "Three", 4: "Four", 5: "Five", 6: "Six"}
 
@@ -152,7 +153,8 @@ def about_together(overlay: Overlay, flights: Sequence[Flight], notes: Sequence[
         f"- **{flight.color_word}** {flight.name}: {title}, {length_words(flight.story, span)}"
         for flight, title in zip(flights, titles, strict=True)
     ]
-    parts.append("\n".join([*told, *(f"- {note}" for note in [*farthest_words(flights), *notes])]))
+    more = [*(farthest_words(flights) if len(flights) <= ROOM else []), *notes]
+    parts.append("\n".join([*told, *(f"- {note}" for note in more)]))
     if aside:
         parts.append(f"*{aside}*")
     return "\n\n".join(parts)

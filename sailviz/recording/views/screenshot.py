@@ -34,6 +34,7 @@ PACKAGES = "libvulkan1 mesa-vulkan-drivers"
 START, SETTLE = 60.0, 25.0  # s to wait for the viewer, and for a picture that no longer changes
 AGREE = 3  # frames in a row that must be the same
 BAR = 37  # pixels of the empty bar that a hidden menu leaves
+MAIN_TOGETHER = ("Flight", "Descent", "Riding along")  # riding along with one, others are not in sight
 MAIN = ("Flight", "Riding along")  # the names of main views, and of recordings from elsewhere whatever comes first
 STYLES = ("dark", "paper")
 LARGEST_SCALE, MOST_PIXELS = 4.0, 8192
@@ -152,8 +153,8 @@ class Studio:
     @property
     def main(self) -> str:
         """The name of the view that shows the flight."""
-        names = self._names()
-        return next((name for wanted in MAIN for name in names if name.startswith(wanted)), next(iter(names)))
+        names, first = self._names(), MAIN_TOGETHER if read(self._path).flights else MAIN
+        return next((name for wanted in first for name in names if name.startswith(wanted)), next(iter(names)))
 
     @property
     def views(self) -> list[str]:

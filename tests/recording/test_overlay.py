@@ -210,3 +210,31 @@ def test_the_words_of_many_flights_leave_out_what_there_is_no_room_for(tmp_path)
         (text,) = sailviz.read(path)["/about"]["text"].ravel()
         assert ("at most" in str(text)) == (count == 2)
         assert len([line for line in str(text).splitlines() if line.startswith("- **")]) == count
+
+
+def test_a_gap_of_the_first_flight_is_told_in_the_line_of_the_moment_and_ends_with_its_next_row(tmp_path):
+    days = np.linspace(0, 300, 40)
+    gap = (days[12] * DAY, days[13] * DAY)
+    record_together({"broken": ring(gaps=[gap]), "whole": ring(1.1 * AU)}, tmp_path / "gap.rrd")
+    lines = []
+    for table in sailviz.read(tmp_path / "gap.rrd")["/now"].tables:
+        times = np.array(table["sim_time"].cast("int64")) / 1e9
+        lines += zip(times, (text[0] for text in table["TextDocument:text"].to_pylist()), strict=True)
+    inside = [text for time, text in lines if gap[0] < time < gap[1]]
+    assert len(inside) == 1
+    assert f"broken without data until day {days[13]:.0f}" in inside[0]
+    assert "whole" in next(text for time, text in sorted(lines) if time >= gap[1] - 1.0)
+
+
+def test_flights_round_a_point_are_told_apart_in_its_own_unit(tmp_path):
+    time = np.linspace(0, 1e5, 60)
+    runs = {}
+    for name, radius in (("near", 2000.0), ("far", 2600.0)):
+        angle = np.sqrt(5.0 / radius**3) * time
+        place = radius * np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1)
+        pace = np.sqrt(5.0 / radius) * np.stack([-np.sin(angle), np.cos(angle), 0 * angle], 1)
+        runs[name] = trajectory(time, place, pace, mu=5.0, body="Bennu")
+    record_together(runs, tmp_path / "point.rrd")
+    text = str(sailviz.read(tmp_path / "point.rrd")["/now"]["text"].ravel()[0])
+    assert "near 2.00 × 10^3 m from the centre" in text
+    assert "far 0.60 × 10^3 m away" in text

@@ -22,6 +22,7 @@ from sailviz.recording.drawing.now_line import (
 )
 from sailviz.recording.drawing.phrases import digits, moments, on_day, push_words
 from sailviz.recording.drawing.story import Story
+from sailviz.run import gaps as spans
 from sailviz.run.moments import run_at
 
 NAMED = 2  # companions that are told one by one in the line of the moment
@@ -34,17 +35,31 @@ def log_now_together(picture: Picture, flights: Sequence[Flight]) -> None:
     """Write /now: the first flight and how far the others are from it; while it does not fly, one that does."""
     story = flights[0].story
     begin, end = span_of(flights)
-    some = np.unique(np.linspace(0, len(story.time) - 1, min(ROWS, len(story.time))).astype(int))
+    some = np.linspace(0, len(story.time) - 1, min(ROWS, len(story.time))).astype(int)
+    some = np.unique(np.concatenate([some, story.breaks, story.breaks + 1]))
     when = moments(story.time, story.setting.epoch, (begin, end))
     parts = [when, *first_words(flights[0]), *beside_words(flights)]
     texts = [BETWEEN.join(word for word in row if word) for row in zip(*parts, strict=True)]
     log_lines(picture, story.samples.index_of(some), [texts[k] for k in some.tolist()])
+    if len(story.breaks):
+        log_lines(picture, story.gap_index, gap_texts_together(flights[0], (begin, end)))
     before = [flight for flight in flights[1:] if flight.story.time[0] < story.time[0]]
     after = [flight for flight in flights[1:] if flight.story.time[-1] > story.time[-1]]
     if before:
         log_alone(picture, flights, min(before, key=lambda f: float(f.story.time[0])), True)
     if after:
         log_alone(picture, flights, max(after, key=lambda f: float(f.story.time[-1])), False)
+
+
+def gap_texts_together(first: Flight, span: tuple[float, float]) -> list[str]:
+    """What is said where data of the first flight ends: until when, and that what is seen of it is older."""
+    story = first.story
+    when = moments(spans.moments(story.gaps), story.setting.epoch, span)
+    until = [on_day(end - span[0], span[1] - span[0]) for _, end in story.gaps]
+    return [
+        BETWEEN.join([now, f"{first.name} without data until {then}", "seen as it last was"])
+        for now, then in zip(when, until, strict=True)
+    ]
 
 
 def span_of(flights: Sequence[Flight]) -> tuple[float, float]:
@@ -79,6 +94,8 @@ def beside_words(flights: Sequence[Flight]) -> list[list[str]]:
         return []
     size, unit = apart_unit(first, max(known))
     decimals = 3 if unit == "au" else digits(max(known) / size)
+
+    unit = f"× {unit}" if unit.startswith("10^") else unit
 
     def said(value: float) -> str:
         return f"{value / size:,.{decimals}f}"
@@ -173,6 +190,7 @@ def farthest_words(flights: Sequence[Flight]) -> list[str]:
         row = int(np.nanargmax(np.abs(off)))
         far, when = float(off[row]), on_day(float(time[row]) - begin, end - begin)
         size, unit = (1e3, "km") if low else apart_unit(first, abs(far))
+        unit = f"× {unit}" if unit.startswith("10^") else unit
         told = f"**{abs(far) / size:.{digits(abs(far) / size)}f} {unit}**"
         way = "away" if not low else "higher" if far > 0 else "lower"
         found.append(f"{flight.name} at most {told} {way}, on {when}")

@@ -56,25 +56,26 @@ def _fly(
     block=None,
     components=6,
     largest_step=np.inf,
+    method=dop853,
 ):
     """Propagate in canonical units (mu = 1 unless the model says otherwise); events as (kind, level, sense, action)."""
     model = dynamics.model(1.0) if model is None else model
     times = np.asarray(times, dtype=float)
-    s = dop853.start(0.0, position, velocity, mass, events=len(events))
+    s = method.start(0.0, position, velocity, mass, events=len(events))
     out, found, status, done = np.full((components, len(times)), np.nan), [], dop853.DONE, 0
     size = block or len(times)
     for first in range(0, len(times), size):
         part = times[first : first + size]
         chunk = np.empty((components, len(part)))
         arguments = (np.asarray(breaks, float), np.asarray(factors, float), watch(events), part, chunk, times[-1])
-        status = dop853.EVENTS_FULL
-        while status == dop853.EVENTS_FULL:
-            status = dop853.advance(s, model, *arguments, tolerance, largest_step)
-            found += dop853.drain_events(s)
-        rows = dop853.rows_done(s)
+        status = method.EVENTS_FULL
+        while status == method.EVENTS_FULL:
+            status = method.advance(s, model, *arguments, tolerance, largest_step)
+            found += method.drain_events(s)
+        rows = method.rows_done(s)
         out[:, first : first + rows] = chunk[:, :rows]
         done = first + rows
-        if status != dop853.DONE:
+        if status != method.DONE:
             break
     return Flight(out[:, :done], found, status, s)
 

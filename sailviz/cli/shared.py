@@ -61,9 +61,9 @@ def values_of(settings: Iterable[str]) -> dict[str, Any]:
 def say_if_compiling(quiet: bool) -> None:
     """Tell a person why the first run takes so long."""
     from sailviz.compiled import is_compiled
-    from sailviz.propagate.dop853 import advance_compiled
+    from sailviz.propagate import collocation, dop853, gauss_jackson
 
-    if not quiet and not is_compiled(advance_compiled):
+    if not quiet and not any(is_compiled(each.advance_compiled) for each in (collocation, dop853, gauss_jackson)):
         click.echo("Compiling the propagator for this machine: once, about 20 s.", err=True)
 
 

@@ -139,10 +139,10 @@ def fill(m, t0, h, t_out, out, first, last):
 
 @inlined
 def evaluate(m, x, w):
-    """w (SIZE,) = the polynomial at x in [0, 1]."""
+    """w (SIZE,) = the polynomial at x, which runs from 0 to 1 over the step, or from -1 to 1 (`collocation`)."""
     for j in range(SIZE):
-        p = m[7, j]
-        for i in range(6, -1, -1):
+        p = m[m.shape[0] - 1, j]
+        for i in range(m.shape[0] - 2, -1, -1):
             p = p * x + m[i, j]
         w[j] = p
 
@@ -175,14 +175,13 @@ def note(s, index, time, w):
 
 
 @called
-def find_events(s, watch, t0, h, x_end, samples, mu, w):
-    """Record every event of the step [t0, t0 + h] up to x_end in order of time, looking at that many samples of it.
-    Returns x of the first that stops the run or ends the use of the device, else 2, and its index."""
-    dense = s.work[DENSE:CLOCK]
+def find_events(s, watch, dense, t0, h, x_start, x_end, samples, mu, w):
+    """Record every event of a step, times t0 + h x, from x_start up to x_end in order of time, looking at that many
+    samples of it. Returns x of the first that stops the run or ends the use of the device, else 2, and its index."""
     before = s.counter[EVENTS]
-    low = 0.0
+    low = x_start
     for piece in range(1, samples + 1):
-        high = x_end * piece / samples
+        high = x_start + (x_end - x_start) * piece / samples
         stop_x, stop_index = 2.0, -1
         first = s.counter[EVENTS]
         for e in range(len(watch.kind)):
@@ -235,15 +234,23 @@ def happenings(s, watch, t0, h, touched, passed, samples, mu, surface, new, w):
     """Note what happens in the step [t0, t0 + h], whose polynomial is there. Returns x where it is cut short, with new
     = the state there, else 2."""
     m = s.work[DENSE:CLOCK]
-    stop_x, stop_index, contact = 2.0, -1, 2.0
+    contact = 2.0
     lowest = 1.0
     if passed:
         lowest = root(m, APSIS, 0.0, mu, 0.0, 1.0, -1.0, w)
         touched = measure(RADIUS, surface, w, mu) < 0.0
     if touched:
         contact = root(m, RADIUS, surface, mu, 0.0, lowest, 1.0, w)
+    return events_until(s, watch, m, t0, h, 0.0, contact, samples, mu, new, w)
+
+
+@inlined
+def events_until(s, watch, m, t0, h, x_start, contact, samples, mu, new, w):
+    """Note the events of the step up to its end, x = 1, or to the contact with the surface. Returns x where it is cut
+    short, with new = the state there, else 2."""
+    stop_x, stop_index = 2.0, -1
     if len(watch.kind) > 0:
-        stop_x, stop_index = find_events(s, watch, t0, h, min(contact, 1.0), samples, mu, w)
+        stop_x, stop_index = find_events(s, watch, m, t0, h, x_start, min(contact, 1.0), samples, mu, w)
     if contact < min(stop_x, 2.0):
         evaluate(m, contact, w)
         note(s, -1, t0 + contact * h, w)

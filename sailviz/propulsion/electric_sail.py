@@ -37,31 +37,43 @@ def esail_force(ux, uy, uz, inverse, nx, ny, nz, c, ac, model, pitch_limit):
 
     NaN beyond the pitch limit of the original and updated models, which do not describe the sail there.
     """
-    if c < 0.0:
-        c, nx, ny, nz = -c, -nx, -ny, -nz
+    along_wind, along_normal = esail_parts(c, ac, model, pitch_limit)
     near = AU * inverse
+    fall = near if model != ORIGINAL else near ** (7.0 / 6.0)  # (3.33), (3.35), (3.39)
+    along_wind, along_normal = fall * along_wind, fall * along_normal
+    return (
+        along_wind * ux + along_normal * nx,
+        along_wind * uy + along_normal * ny,
+        along_wind * uz + along_normal * nz,
+    )
+
+
+@inlined
+def esail_parts(c, ac, model, pitch_limit):
+    """What `esail_force` has along the wind and along the normal at 1 au, m/s2."""
     if model == FINAL:
-        q = 0.5 * ac * near  # (3.39)
-        return q * (ux + c * nx), q * (uy + c * ny), q * (uz + c * nz)
-    wx, wy, wz = nx - c * ux, ny - c * uy, nz - c * uz
-    s = np.sqrt(wx * wx + wy * wy + wz * wz)
+        return 0.5 * ac, 0.5 * ac * c  # (3.39)
+    side = 1.0
+    if c < 0.0:
+        side, c = -1.0, -c
+    s = np.sqrt(max(0.0, (1.0 - c) * (1.0 + c)))
     alpha = np.arctan2(s, c)
+    size, slope = ac, 0.5  # of phi at small angles
     if model == POLYNOMIAL:
-        d = np.degrees(alpha)
+        d, slope = np.degrees(alpha), 4.853e-1
         # (3.36)-(3.38), table 3.2, angles in degrees; clamped where the fit leaves the physical range
         phi = d * (4.853e-1 + d * (3.652e-3 + d * (-2.661e-4 + d * (6.322e-6 + d * (-8.295e-8 + d * 3.681e-10)))))
         phi = np.radians(max(phi, 0.0))
         gamma = 1.0 + d * (
             6.904e-5 + d * (-1.271e-4 + d * (7.027e-7 + d * (-1.261e-8 + d * (1.943e-10 + d * -5.896e-13))))
         )
-        size = min(gamma, 1.0) * ac * near
+        size = ac * min(gamma, 1.0)
     else:
         phi = 0.5 * alpha  # (3.34)
-        size = ac * near if model == UPDATED else ac * near ** (7.0 / 6.0)  # (3.35), (3.33)
         if alpha > pitch_limit * (1.0 + 1e-12):
             size = np.nan
-    along, across = size * np.cos(phi), size * np.sin(phi) / s if s > 0.0 else 0.0
-    return along * ux + across * wx, along * uy + across * wy, along * uz + across * wz
+    across = size * (np.sin(phi) / s if s > 0.0 else slope)  # of the part of the normal across the wind
+    return size * np.cos(phi) - across * c, side * across
 
 
 @entry("d2 d2 d i d D2")

@@ -109,16 +109,21 @@ def film(name: str) -> Film:
 def sail_force(ux, uy, uz, inverse, nx, ny, nz, c, strength, b1, b2, b3):
     """Acceleration of an optical film. u = r_hat, inverse = 1/r in 1/m, c = u . n;
     strength = a_c r_E^2 / (b1 + b2 + b3), m3/s2. (3.17), (3.23)"""
-    if c <= 0.0:  # the back of the sail: the models describe the front only
-        return 0.0, 0.0, 0.0
-    q = strength * inverse * inverse * c
-    along_light = q * b1
-    along_normal = q * (b2 * c + b3)
+    along_light, along_normal = sail_parts(c, strength * inverse * inverse, b1, b2, b3)
     return (
         along_light * ux + along_normal * nx,
         along_light * uy + along_normal * ny,
         along_light * uz + along_normal * nz,
     )
+
+
+@inlined
+def sail_parts(c, q, b1, b2, b3):
+    """What `sail_force` has along the sunlight and along the normal; q is its strength over the distance's square."""
+    if c <= 0.0:  # the back of the sail: the models describe the front only
+        return 0.0, 0.0
+    q = q * c
+    return q * b1, q * (b2 * c + b3)
 
 
 @entry("d2 d2 d d d d D2")

@@ -34,7 +34,7 @@ class Propagation(Section):
     outputs: Annotated[int, Field(ge=2, le=1_000_000_000)] | None = None
     output_interval: Annotated[Time, POSITIVE] | None = None
     dense: list[DenseOutput] = []
-    integrator: Literal["auto", "dop853", "gauss-jackson"] = "auto"
+    integrator: Literal["auto", "collocation", "dop853", "gauss-jackson"] = "auto"
     tolerance: Annotated[float, Field(ge=1e-15, le=1e-3)] = 1e-10
     largest_step: Annotated[Time, POSITIVE] | None = None
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sailviz.propagate import stepping
-from sailviz.propagate.choice import GAUSS_JACKSON
+from sailviz.propagate.choice import ASKED, COLLOCATION, GAUSS_JACKSON
 from sailviz.propagate.patience import Patience
 from sailviz.simulation.integration import INTEGRATORS, begun
 from sailviz.simulation.plan import Plan
@@ -87,11 +87,18 @@ def accuracy_in_words(p: Plan, measure: bool) -> str:
             f"Summed Gauss-Jackson, fixed step for a tolerance of {tolerance:g} of the distance, compensated sums, "
             "quintic output between the steps, float64; started and restarted by Dormand-Prince 8(5,3)."
         )
+    elif p.choice.integrator == COLLOCATION:
+        how = (
+            f"Gauss-Legendre collocation of order 16, in steps that keep positions to {tolerance:g} of the distance, "
+            "float64."
+        )
     else:
         how = (
             f"Dormand-Prince 8(5,3) with dense output, relative tolerance {tolerance:g} per step (position against "
             "distance, velocity against the larger of speed and circular speed), float64."
         )
+    if p.choice.reason != ASKED:
+        how = f"{how} Chosen because {p.choice.reason}."
     if not measure:
         return how
     found = measured(p)

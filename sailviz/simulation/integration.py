@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from sailviz.propagate import dop853, gauss_jackson
-from sailviz.propagate.choice import DOP853, GAUSS_JACKSON
+from sailviz.propagate import collocation, dop853, gauss_jackson
+from sailviz.propagate.choice import COLLOCATION, DOP853, GAUSS_JACKSON
 from sailviz.propagate.gauss_jackson_steps import refinement_for
 from sailviz.simulation.plan import Plan
 
-INTEGRATORS = {DOP853: dop853, GAUSS_JACKSON: gauss_jackson}
+INTEGRATORS = {COLLOCATION: collocation, DOP853: dop853, GAUSS_JACKSON: gauss_jackson}
 
 
 def begun(p: Plan, finer: float = 1.0) -> Any:
@@ -17,4 +17,4 @@ def begun(p: Plan, finer: float = 1.0) -> Any:
     given = (0.0, p.position, p.velocity, p.mass, len(p.names))
     if p.choice.integrator == GAUSS_JACKSON:
         return gauss_jackson.start(*given, refinement=finer * refinement_for(p.scene.propagation.tolerance))
-    return dop853.start(*given)
+    return INTEGRATORS[p.choice.integrator].start(*given)

@@ -12,7 +12,7 @@ import sailviz
 from sailviz import elements as orbital
 from sailviz import ephemeris
 from sailviz.environment import ionosphere
-from sailviz.propagate import dop853
+from sailviz.propagate import stepping
 from sailviz.propagate.patience import Patience
 from sailviz.run.arrays import Reference, Setting, Shell
 from sailviz.scene.start import DesignedStart
@@ -20,6 +20,7 @@ from sailviz.simulation.accuracy import accuracy_in_words
 from sailviz.simulation.bodies import epoch_of
 from sailviz.simulation.device import craft
 from sailviz.simulation.environment import ENVIRONMENT, drawn_bodies
+from sailviz.simulation.integration import INTEGRATORS, begun
 from sailviz.simulation.parameters_in_words import parameters_in_words
 from sailviz.simulation.plan import Plan
 from sailviz.simulation.start import departure
@@ -149,10 +150,10 @@ def _farthest(p: Plan) -> float:
     size. What would take long is told by its beginning."""
     times = np.linspace(0.0, p.scene.propagation.duration, 256)
     out = np.empty((6, len(times)))
-    state = dop853.start(0.0, p.position, p.velocity, p.mass, events=len(p.names))
+    method, state = INTEGRATORS[p.choice.integrator], begun(p)
     arguments = p.schedule.breaks, p.schedule.factors, p.watch, times, out, times[-1]
-    dop853.advance(state, p.model, *arguments, 1e-7, np.inf, Patience(MOST_STEPS_AHEAD))
-    return float(np.linalg.norm(out[:3, : dop853.rows_done(state)], axis=0).max())
+    method.advance(state, p.model, *arguments, 1e-7, np.inf, Patience(MOST_STEPS_AHEAD))
+    return float(np.linalg.norm(out[:3, : stepping.rows_done(state)], axis=0).max())
 
 
 def bodies(p: Plan, planets, time) -> dict[str, np.ndarray]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
@@ -57,6 +59,7 @@ def test_hundred_revolutions_follow_keplers_equation(fly, e, within):
 
 
 def test_error_per_revolution_falls_with_the_eighth_power_of_the_step(fly):
+    fly = partial(fly, method=dop853)
     e = 0.2
     missed = []
     for steps in (40, 80):
@@ -67,6 +70,7 @@ def test_error_per_revolution_falls_with_the_eighth_power_of_the_step(fly):
 
 
 def test_dense_output_has_order_seven(fly):
+    fly = partial(fly, method=dop853)
     """The error inside one step of length h goes with h^8: halving the step divides it by 256."""
     missed = []
     for h in (TURN / 20, TURN / 40):
@@ -183,7 +187,8 @@ def test_steps_land_on_every_redraw(fly):
     interval = np.searchsorted(breaks, times, side="right") - 1
     expected = gained[interval] + 0.1 * factors[interval] * (times - breaks[interval])
     assert np.abs(flight.states[5] - expected).max() < 1e-14
-    assert dop853.statistics(flight.integration)[1] == 0
+    if fly.keywords["method"] is dop853:
+        assert dop853.statistics(flight.integration)[1] == 0
 
 
 def test_held_table_turns_exactly_at_its_rows(fly):
@@ -202,7 +207,8 @@ def test_held_table_turns_exactly_at_its_rows(fly):
         breaks=[0, 4, 6],
         factors=[1, 1, 1],
     )
-    assert dop853.statistics(flight.integration)[1] == 0
+    if fly.keywords["method"] is dop853:
+        assert dop853.statistics(flight.integration)[1] == 0
     y, begin = np.concatenate(perihelion(0.2)), 0.0
     for end, clock in ((4.0, 0.0), (6.0, np.pi), (9.0, 0.0)):
         model = thruster(0.01, attitude.ORBITAL, steering_parameters=attitude.direction_parameters(np.pi / 2, clock))
@@ -385,7 +391,7 @@ def test_a_pass_just_above_the_surface_is_no_impact(fly):
     assert flight.status == dop853.DONE
 
 
-def test_a_device_out_of_use_leaves_a_ballistic_flight(fly):
+def test_a_device_out_of_use_leaves_a_ballistic_flight(fly, speed_errs):
     """Transverse thrust until r = 1.5; from there on energy and angular momentum stay what they were."""
     flight = fly(
         thruster(0.02, attitude.TRANSVERSE), times=np.linspace(0, 60, 601), events=[(RADIUS, 1.5, 1, END_OF_USE)]
@@ -396,8 +402,8 @@ def test_a_device_out_of_use_leaves_a_ballistic_flight(fly):
     after = np.linspace(0, 60, 601) > when
     r, v = flight.position[after], flight.velocity[after]
     energy = np.sum(v * v, axis=1) / 2 - 1 / np.linalg.norm(r, axis=1)
-    assert np.abs(energy - (y[3:6] @ y[3:6] / 2 - 1 / 1.5)).max() < 1e-12
-    assert np.abs(np.cross(r, v)[:, 2] - np.cross(y[:3], y[3:6])[2]).max() < 1e-12
+    assert np.abs(energy - (y[3:6] @ y[3:6] / 2 - 1 / 1.5)).max() < 1e-12 * speed_errs
+    assert np.abs(np.cross(r, v)[:, 2] - np.cross(y[:3], y[3:6])[2]).max() < 1e-12 * speed_errs
 
 
 def test_an_acceleration_that_is_not_finite_is_reported_where_it_begins(fly):
@@ -416,7 +422,7 @@ def test_a_fall_into_the_centre_underflows_at_the_time_of_the_fall(fly):
 
 
 # ---------------------------------------------------------------- mass, oblateness
-def test_mass_and_speed_obey_the_rocket_equation(fly):
+def test_mass_and_speed_obey_the_rocket_equation(fly, speed_errs):
     """Constant thrust in empty space: m = m0 - F t / c, v = c ln(m0 / m)."""
     thrust, exhaust = 0.3, 2.0
     model = dynamics.model(
@@ -430,7 +436,7 @@ def test_mass_and_speed_obey_the_rocket_equation(fly):
     flight = fly(model, velocity=(0, 0, 0), times=times, mass=1.5, components=7)
     mass = 1.5 - thrust * times / exhaust
     assert np.abs(flight.states[6] - mass).max() < 1e-14
-    assert np.abs(flight.states[4] - exhaust * np.log(1.5 / mass)).max() < 1e-12
+    assert np.abs(flight.states[4] - exhaust * np.log(1.5 / mass)).max() < 1e-12 * speed_errs
 
 
 def test_constant_acceleration_burns_mass_exponentially(fly):
@@ -481,10 +487,10 @@ def test_oblateness_keeps_energy_and_the_axial_angular_momentum(fly):
 
 
 # ---------------------------------------------------------------- the electric sail's reach
-def test_electric_sail_weakens_with_distance_not_with_its_square(fly):
+def test_electric_sail_weakens_with_distance_not_with_its_square(fly, speed_errs):
     """Sun-facing E-sail: radial thrust a_c (r_E / r), so the energy E + a_c r_E ln r is lost to nothing."""
     model = dynamics.model(1.0, device=dynamics.ELECTRIC_SAIL, device_parameters=(0.1 / AU, 0, 1.0))
     flight = fly(model, *perihelion(0.2), np.linspace(0, 40, 401))
     r = np.linalg.norm(flight.position, axis=1)
     energy = np.sum(flight.velocity**2, axis=1) / 2 - 1 / r - 0.1 * np.log(r)
-    assert np.ptp(energy) < 1e-12
+    assert np.ptp(energy) < 1e-12 * speed_errs

@@ -1,0 +1,303 @@
+"""Adaptive integration of one smooth trajectory: Gauss-Legendre collocation of order 16, eight forces at once.
+
+Rows are read off the polynomial of a step, of degree 9 in the position; events are its roots; steps land on every time
+at which the thrust factor or the steering table has a kink. A step that an event cuts short is made again, shorter, so
+that what follows starts from the end of a step, which is far more accurate than its inside.
+
+`Collocation` keeps everything between calls of `advance`, so a run may be computed in blocks of any size and is the
+same to the last bit. Source of the method: gauss_legendre.py; what a step does: collocation_steps.py.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from sailviz.compiled import entry, inlined
+from sailviz.propagate.collocation_steps import (
+    CLOSEST,
+    LAST_ERROR,
+    LAST_STEP,
+    LENGTH,
+    NODE,
+    POWERS,
+    SPAN,
+    by_powers,
+    fill_rows,
+    fits_lanes,
+    is_table,
+    keep_end,
+    keep_polynomial,
+    missing,
+    node,
+    prepare,
+    rows_before,
+    store,
+    sweep,
+)
+from sailviz.propagate.dynamics import SIZE
+from sailviz.propagate.events import APSIS, RADIUS, Watch, measure
+from sailviz.propagate.parameters import PARAMETERS
+from sailviz.propagate.patience import first_piece
+from sailviz.propagate.stepping import (
+    CLOCK,
+    EVENTS,
+    IN_USE,
+    INTERVAL,
+    MOST_EVENTS,
+    NEW,
+    PAUSED,
+    REJECTED,
+    STARTED,
+    STATUS,
+    STEP,
+    STEPS,
+    TIME,
+    Integration,
+    W,
+    Y,
+    begin,
+    close_block,
+    evaluate,
+    events_until,
+    in_pieces,
+    next_limit,
+    open_block,
+    root,
+    settle,
+)
+from sailviz.propagate.stepping import DONE as DONE
+from sailviz.propagate.stepping import EVENTS_FULL as EVENTS_FULL
+from sailviz.propagate.stepping import NOT_FINITE as NOT_FINITE
+from sailviz.propagate.stepping import STOPPED as STOPPED
+from sailviz.propagate.stepping import SURFACE as SURFACE
+from sailviz.propagate.stepping import UNDERFLOW as UNDERFLOW
+from sailviz.propagate.stepping import drain_events as drain_events
+from sailviz.propagate.stepping import in_use as in_use
+from sailviz.propagate.stepping import rows_done as rows_done
+from sailviz.propagate.stepping import state as state
+from sailviz.propagate.stepping import statistics as statistics
+from sailviz.propagate.stepping import stopped_by as stopped_by
+from sailviz.propagate.stepping import time as time
+from sailviz.propulsion.devices import CALLED, NO_DEVICE, THRUSTER
+
+MOST_SAMPLES = 16  # of a step, when events are looked for
+SAMPLES_A_RADIAN = 10.0  # of a circular orbit at the distance of the start of the step
+SAFETY, SHRINK_MOST, GROW_MOST, BEARABLE = 0.95, 0.4, 2.0, 1.5  # of the step-size controller
+WORST = 2.1  # the largest error that a step within its bounds was seen to make, over them
+ORDER = 10  # of the position between the nodes
+POLYNOMIAL = 28  # rows of Integration.work from here on: coefficients of the last step's polynomial in s
+SWEEPS = 9  # place in Integration.counter, after those that all integrators have
+
+
+_BEGUN = np.zeros(10, dtype=np.int64)
+_BEGUN[IN_USE] = 1
+
+
+class Collocation(NamedTuple):
+    """Everything that an integration remembers between calls."""
+
+    work: np.ndarray  # the first four as in stepping.Integration
+    counter: np.ndarray
+    sign: np.ndarray
+    event: np.ndarray
+    nodes: np.ndarray  # (LENGTH,) see the places of collocation_steps
+
+
+def start(t, position, velocity, mass, events=0) -> Collocation:
+    """A fresh Collocation at time s, position m, velocity m/s, mass kg, with room for a number of events."""
+    work = np.zeros((POLYNOMIAL + POWERS, SIZE))
+    work[Y] = (*position, *velocity, mass)
+    work[CLOCK, TIME] = t
+    count = _BEGUN.copy()
+    event = np.empty((MOST_EVENTS * (events > 0) + MOST_SAMPLES * events + 1, 9))
+    return Collocation(work, count, np.zeros(events), event, np.zeros(LENGTH))
+
+
+def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step, patience=None) -> int:
+    """Integrate until every row of the block is filled, or until something ends the run: as dop853.advance, in every
+    argument and status. tolerance : of the position, over the distance from the centre, of every row."""
+    numbers = t_end, tolerance, largest_step
+    return in_pieces(advance_compiled, s, model, (breaks, factors, *watch), t_out, out, numbers, patience)
+
+
+@entry("D2 I1 D1 D2 D1 R1 d1 D1 i1 d1 i1 i1 d1 D2 d d d i", PARAMETERS)
+def advance_compiled(
+    work, count, sign, event, nodes, parameters, breaks, factors,
+    kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step, piece,
+):  # fmt: skip
+    """`advance` with its tuples taken apart."""
+    s = Integration(work, count, sign, event)
+    p = parameters[0]
+    watch = Watch(kinds, levels, senses, actions)
+    n = t_out.shape[0]
+    mu, surface = p.gravity.mu, p.surface.radius
+    clock, y, w, new = work[CLOCK], work[Y], work[W], work[NEW]
+    polynomial = work[POLYNOMIAL : POLYNOMIAL + POWERS]
+    watched = len(watch.kind)
+    at_once = fits_lanes(p)
+    burns = p.kinds.device == CALLED or (p.kinds.device == THRUSTER and p.thruster.inverse_exhaust != 0.0)
+    varies = at_once and p.kinds.device != NO_DEVICE
+    if count[STARTED] == 0:
+        begin(s, watch, breaks, factors, p)
+        store(nodes, NODE, node())
+        nodes[SPAN] = t_end - clock[TIME]
+        clock[STEP] = min(first_step(y, mu, tolerance), largest_step)
+    row, ended = open_block(count)
+    pause = count[STEPS] + count[REJECTED] + (piece if piece > 0 else first_piece(p))
+    t, interval = clock[TIME], count[INTERVAL]
+    factor = factors[interval] * count[IN_USE]
+    if varies:
+        prepare(nodes, t, 0.0, factor, p)
+    while True:
+        while row < n and t_out[row] <= t:
+            if t_out[row] == t:
+                for j in range(out.shape[0]):
+                    out[j, row] = y[j]
+                row += 1
+            else:
+                last = rows_before(t_out, row, t)
+                fill_rows(nodes, t_out, out, row, last)
+                row = last
+        if row >= n or ended:
+            break
+        if count[EVENTS] > MOST_EVENTS:
+            count[STATUS] = EVENTS_FULL
+            break
+        if count[STEPS] + count[REJECTED] >= pause:
+            count[STATUS] = PAUSED
+            break
+        limit = next_limit(breaks, interval, t_end)
+        r, bearable, agreed = bounds(y, mu, tolerance, nodes[SPAN])
+        wish, rejected, grow = clock[STEP], False, 1.0
+        while True:
+            h = min(wish, largest_step)
+            landing = t + 1.01 * h >= limit
+            h = limit - t if landing else (t + h) - t  # exactly what the time will have moved
+            if h <= 4.0e-16 * max(abs(t), abs(t_end)) and not landing:
+                count[STATUS] = UNDERFLOW
+                break
+            if varies and is_table(p.kinds.steering):
+                prepare(nodes, t, h, factor, p)
+            enough = agreed / (h * h)
+            fits, sweeps = sweep(nodes, work, t, h, enough * enough, at_once, burns, factor, p)
+            count[SWEEPS] += sweeps
+            error = missing(nodes, h, r, y[6], burns) / bearable if fits else np.inf
+            if error <= BEARABLE:
+                grow = growth(nodes, h, error, rejected)
+                break
+            if error < np.inf:
+                wish = h * growth(nodes, h, error, True)
+            else:
+                # leave a singular spot slowly; give up when even a tiny step is not finite
+                wish = 0.3 * h
+                if wish <= 4.0e-14 * max(abs(t), abs(t_end)):
+                    count[STATUS] = NOT_FINITE
+                    break
+            rejected = True
+            count[REJECTED] += 1
+        if count[STATUS] != DONE:
+            break
+        nodes[LAST_STEP], nodes[LAST_ERROR] = h, error
+        # a step cut short by a landing must not shorten the next one
+        clock[STEP] = max(h * grow, wish) if landing and not rejected else h * grow
+        count[STEPS] += 1
+        t0 = t
+        t = limit if landing else t + h
+        keep_polynomial(nodes, work, t0, h, burns)
+        near = surface > 0.0 and nodes[CLOSEST] < surface + 0.1 * r
+        stop_x = 2.0
+        if watched > 0 or near:
+            by_powers(nodes, polynomial)
+            samples = min(MOST_SAMPLES, 2 + int(SAMPLES_A_RADIAN * h * np.sqrt(mu / (r * r * r))))
+            contact = surface_met(polynomial, surface, mu, samples, w) if near else 2.0
+            stop_x = events_until(s, watch, polynomial, t0 + 0.5 * h, 0.5 * h, -1.0, contact, samples, mu, new, w)
+        fits = True
+        if stop_x < 2.0:  # the step once more, as far as it goes
+            t = t0 + 0.5 * h + 0.5 * h * stop_x
+            h = t - t0
+            if varies and is_table(p.kinds.steering):
+                prepare(nodes, t0, h, factor, p)
+            fits = h > 0.0 and sweep(nodes, work, t0, h, enough * enough, at_once, burns, factor, p)[0]
+            if fits:
+                keep_polynomial(nodes, work, t0, h, burns)
+        keep_end(nodes, work, h, burns, fits)
+        if stop_x < 2.0:
+            note_end(s, t, new)
+        interval, new_factor, _ = settle(s, breaks, factors, p, t, limit, t_end, stop_x < 2.0, interval, factor)
+        if new_factor != factor and varies:
+            prepare(nodes, t, 0.0, new_factor, p)
+        factor = new_factor
+        ended = count[STATUS] != DONE
+    return close_block(s, t_out, row, ended)
+
+
+@inlined
+def note_end(s, t, new):
+    """The events at the end of a shortened step have its state."""
+    for i in range(s.counter[EVENTS]):
+        if s.event[i, 1] == t:
+            for j in range(SIZE):
+                s.event[i, 2 + j] = new[j]
+
+
+@inlined
+def bounds(y, mu, tolerance, span):
+    """(distance from the centre, m; error between the nodes that a step may have, m; how well its path and its forces
+    must agree, m) for a run of `span` s.
+
+    The error is the tolerance's, unless the run is so long that the errors at the ends of the steps add up to more:
+    measured on Kepler orbits of every eccentricity they are about 60 dense^1.6, both over the distance, partly cancel
+    within a revolution and grow with the square of time; so does what path and forces disagree by.
+    """
+    r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
+    v2 = y[3] * y[3] + y[4] * y[4] + y[5] * y[5]
+    r = np.sqrt(r2)
+    inverse_axis = max(0.0, 2.0 / r - v2 / mu)
+    near = max(1.0, 1.0 / (r * inverse_axis)) if inverse_axis > 0.0 else 1.0
+    turned = span * np.sqrt(mu / (r2 * r)) * near**-1.5
+    wanted = tolerance / WORST
+    growth = turned * turned * near * near * near
+    dense = min(wanted, (wanted / growth) ** 0.625)
+    agreed = min(wanted, 1e-6) * 0.01 / ((1.0 + (turned / 50.0) ** 2) * near * near * near)
+    return r, dense * r, agreed * r
+
+
+@inlined
+def growth(nodes, h, error, rejected):
+    """By how much the next step may be longer, from the error of this one and how it has changed since the last."""
+    if error == 0.0:
+        return GROW_MOST
+    grow = SAFETY * error ** (-1.0 / ORDER)
+    before = nodes[LAST_ERROR]
+    if before > 0.0 and not rejected:
+        h_before = nodes[LAST_STEP]
+        trend = h / h_before * (before / error) ** (1.0 / ORDER)
+        grow *= min(1.3, max(0.7, trend))
+    return min(GROW_MOST, max(SHRINK_MOST, grow))
+
+
+@inlined
+def first_step(y, mu, tolerance):
+    """A length to try first, s: what a circular orbit would get."""
+    r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
+    return 11.0 * tolerance ** (1.0 / ORDER) * np.sqrt(r2 * np.sqrt(r2) / mu)
+
+
+@inlined
+def surface_met(polynomial, surface, mu, samples, w):
+    """s at which the polynomial first comes below the surface, else 2."""
+    before, falling = -1.0, False
+    for k in range(samples + 1):
+        here = -1.0 + 2.0 * k / samples
+        evaluate(polynomial, here, w)
+        below, falls = measure(RADIUS, surface, w, mu) < 0.0, measure(APSIS, 0.0, w, mu) < 0.0
+        deepest = here
+        if k > 0 and falling and not falls and not below:  # a periapsis on the way
+            deepest = root(polynomial, APSIS, 0.0, mu, before, here, -1.0, w)
+            below = measure(RADIUS, surface, w, mu) < 0.0
+        if below:
+            return root(polynomial, RADIUS, surface, mu, before, deepest, 1.0, w)
+        before, falling = here, falls
+    return 2.0

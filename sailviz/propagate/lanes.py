@@ -1,0 +1,215 @@
+"""Eight numbers that compiled code computes with like one: the type `lanes`, LLVM's <8 x double>. Imports numba; the
+modules that use these names import them late, when code is compiled.
+
+Sums, products, quotients, powers and square roots of lanes, and of lanes and numbers, mean what they mean for numbers.
+Physics written for one state, `gravity` or `orbital_direction`, so works on eight states at once as it stands, provided
+that it branches on numbers only. LLVM makes of it one register of AVX-512, two of AVX2 or four of NEON.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from llvmlite import ir
+from numba.core import types
+from numba.core.datamodel import models
+from numba.core.extending import register_model
+from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+from numba.extending import intrinsic, lower_builtin
+
+COUNT = 8
+REAL, WORD, SHORT = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
+VECTOR = ir.VectorType(REAL, COUNT)
+FREE = ("contract", "nsz")  # as all compiled code: a product and a sum may become one, and zero has no sign
+NUMBERS = (types.Float, types.Integer)
+
+
+class Lanes(types.Type):
+    """The type, for numba."""
+
+    def __init__(self) -> None:
+        super().__init__(name="lanes")
+
+
+lanes = Lanes()
+
+
+@register_model(Lanes)
+class _Model(models.PrimitiveModel):
+    def __init__(self, manager, kind):
+        super().__init__(manager, kind, VECTOR)
+
+
+def _shuffled(builder, a, b, places):
+    return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(SHORT, len(places)), list(places)))
+
+
+def _spread(builder, value):
+    undefined = ir.Constant(VECTOR, ir.Undefined)
+    return _shuffled(builder, builder.insert_element(undefined, value, ir.Constant(SHORT, 0)), undefined, [0] * COUNT)
+
+
+def _as_lanes(builder, value, kind):
+    if kind == lanes:
+        return value
+    return _spread(builder, builder.sitofp(value, REAL) if isinstance(kind, types.Integer) else value)
+
+
+def _llvm(builder, name, *arguments):
+    """Call one of LLVM's own functions of vectors or numbers."""
+    function = builder.module.globals.get(name)
+    if function is None:
+        function = ir.Function(builder.module, ir.FunctionType(arguments[0].type, [a.type for a in arguments]), name)
+    return builder.call(function, arguments)
+
+
+def _between_two(operation: Callable[..., Any], make: Callable[..., Any]) -> None:
+    """Teach numba an operator; make (builder, a, b) -> the instruction."""
+
+    @infer_global(operation)
+    class Typing(AbstractTemplate):
+        def generic(self, arguments, keywords):
+            if len(arguments) == 2 and lanes in arguments and all(isinstance(a, (Lanes, *NUMBERS)) for a in arguments):
+                return signature(lanes, *arguments)
+            return None
+
+    def lower(context, builder, sig, arguments):
+        return make(builder, *(_as_lanes(builder, v, k) for v, k in zip(arguments, sig.args, strict=True)))
+
+    for pair in [(lanes, lanes)] + [p for number in NUMBERS for p in ((lanes, number), (number, lanes))]:
+        lower_builtin(operation, *pair)(lower)
+
+
+for _operations, _name in (
+    ((operator.add, operator.iadd), "fadd"),
+    ((operator.sub, operator.isub), "fsub"),
+    ((operator.mul, operator.imul), "fmul"),
+    ((operator.truediv, operator.itruediv), "fdiv"),
+):
+    for _operation in _operations:
+        _between_two(_operation, lambda builder, a, b, name=_name: getattr(builder, name)(a, b, flags=FREE))
+_between_two(operator.pow, lambda builder, a, b: _llvm(builder, "llvm.pow.v8f64", a, b))
+
+
+def _of_one(operation: Callable[..., Any], make: Callable[..., Any]) -> None:
+    @infer_global(operation)
+    class Typing(AbstractTemplate):
+        def generic(self, arguments, keywords):
+            return signature(lanes, lanes) if tuple(arguments) == (lanes,) else None
+
+    lower_builtin(operation, lanes)(lambda context, builder, sig, arguments: make(builder, arguments[0]))
+
+
+_of_one(operator.neg, lambda builder, a: builder.fneg(a))
+_of_one(np.sqrt, lambda builder, a: _llvm(builder, "llvm.sqrt.v8f64", a))
+
+
+def _place(context, builder, sig, arguments):
+    array = context.make_array(sig.args[0])(context, builder, arguments[0])
+    place = builder.gep(array.data, [arguments[1]], source_etype=REAL)
+    return builder.bitcast(place, VECTOR.as_pointer())
+
+
+@intrinsic
+def load(typing, array, first):
+    """array[first : first + 8] of a contiguous array of floats, whatever its length."""
+
+    def generate(context, builder, sig, arguments):
+        value = builder.load(_place(context, builder, sig, arguments), typ=VECTOR)
+        value.align = 8
+        return value
+
+    return lanes(array, types.int64), generate
+
+
+@intrinsic
+def store(typing, array, first, value):
+    """array[first : first + 8] = value."""
+
+    def generate(context, builder, sig, arguments):
+        builder.store(arguments[2], _place(context, builder, sig, arguments)).align = 8
+        return context.get_dummy_value()
+
+    return types.void(array, types.int64, lanes), generate
+
+
+@intrinsic
+def spread(typing, number):
+    """Eight times the same number."""
+
+    def generate(context, builder, sig, arguments):
+        return _spread(builder, arguments[0])
+
+    return lanes(types.float64), generate
+
+
+@intrinsic
+def first(typing, a):
+    """The first of eight."""
+
+    def generate(context, builder, sig, arguments):
+        return builder.extract_element(arguments[0], ir.Constant(SHORT, 0))
+
+    return types.float64(lanes), generate
+
+
+def constant(values: Callable[[], np.ndarray]) -> Any:
+    """An inlined function () -> eight numbers (8,), asked for when something is compiled."""
+
+    @intrinsic
+    def made(typing):
+        def generate(context, builder, sig, arguments):
+            return ir.Constant(VECTOR, [float(value) for value in values()])
+
+        return lanes(), generate
+
+    return made
+
+
+def _folded(fold: Callable[..., Any]) -> Any:
+    """An inlined function: lanes -> one number; fold (builder, low half, high half)."""
+
+    @intrinsic
+    def folded(typing, a):
+        def generate(context, builder, sig, arguments):
+            value = arguments[0]
+            for half in (4, 2, 1):
+                low = _shuffled(builder, value, value, range(half))
+                value = fold(builder, low, _shuffled(builder, value, value, range(half, 2 * half)))
+            return builder.extract_element(value, ir.Constant(SHORT, 0))
+
+        return types.float64(lanes), generate
+
+    return folded
+
+
+total = _folded(lambda builder, a, b: builder.fadd(a, b))
+smallest = _folded(lambda builder, a, b: builder.select(builder.fcmp_ordered("<", a, b), a, b))  # of numbers: not a NaN
+
+
+def product_with(table: Callable[[], np.ndarray], chains: int = 2) -> Any:
+    """An inlined function (array, first): the sum over j of table[:, j] array[first + j], for a table (8, n) that
+    becomes part of the code when something is compiled. chains : independent sums, which the processor works on at
+    once."""
+
+    @intrinsic
+    def product(typing, array, start):
+        def generate(context, builder, sig, arguments):
+            data = context.make_array(sig.args[0])(context, builder, arguments[0]).data
+            sums: list[Any] = [None] * chains
+            for j, column in enumerate(np.asarray(table(), float).T.tolist()):
+                place = builder.gep(data, [builder.add(arguments[1], ir.Constant(WORD, j))], source_etype=REAL)
+                value = _spread(builder, builder.load(place, typ=REAL))
+                term = builder.fmul(ir.Constant(VECTOR, column), value, flags=FREE)
+                before = sums[j % chains]
+                sums[j % chains] = term if before is None else builder.fadd(before, term, flags=FREE)
+            while len(sums) > 1:
+                sums = [builder.fadd(a, b) for a, b in zip(sums[::2], sums[1::2], strict=True)]
+            return sums[0]
+
+        return lanes(array, types.int64), generate
+
+    return product

@@ -151,8 +151,10 @@ def _farthest(p: Plan) -> float:
     times = np.linspace(0.0, p.scene.propagation.duration, 256)
     out = np.empty((6, len(times)))
     method, state = INTEGRATORS[p.choice.integrator], begun(p)
-    arguments = p.schedule.breaks, p.schedule.factors, p.watch, times, out, times[-1]
+    arguments = p.schedule.breaks, p.schedule.factors.copy(), p.watch, times, out, times[-1]
+    kept = p.model.tables.copy()
     method.advance(state, p.model, *arguments, 1e-7, np.inf, Patience(MOST_STEPS_AHEAD))
+    p.model.tables[:] = kept  # where a voltage controller notes what it does
     return float(np.linalg.norm(out[:3, : stepping.rows_done(state)], axis=0).max())
 
 

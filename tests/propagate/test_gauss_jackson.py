@@ -291,11 +291,33 @@ def test_many_turns_of_a_low_orbit_are_left_to_the_multistep_method():
     low = earth(surface_radius=RADIUS_EARTH)
     assert chosen(low, orbit(700e3, 0.02), 365).integrator == "gauss-jackson"
     assert chosen(low, orbit(700e3), 365, wanted="dop853").integrator == "dop853"
-    assert chosen(low, orbit(700e3), 365, breaks=np.arange(0, 365 * DAY, 600.0)).integrator == "dop853"
-    assert chosen(low, orbit(700e3), 1).reason == "15 revolutions are few"
+    assert chosen(low, orbit(700e3), 365, breaks=np.arange(0, 365 * DAY, 600.0)).integrator == "collocation"
+    assert chosen(low, orbit(700e3), 1).integrator == "collocation"
+    assert chosen(low, orbit(36_000e3), 3650).reason == "the forces are smooth"
     tabled = earth(surface_radius=RADIUS_EARTH, air=(atmosphere.TABLED, 1.0), air_table=np.zeros(20))
     assert "tables" in chosen(tabled, orbit(700e3), 365).reason
-    assert chosen(low, orbit(36_000e3), 3650).reason == "the orbit is not a low one"
+    assert chosen(tabled, orbit(700e3), 365).integrator == "dop853"
+
+
+def test_what_may_jump_unforeseen_is_left_to_dop853():
+    sun = {"position": (1.0, 0, 0), "velocity": (0, 1.0, 0), "duration": 10.0}
+    film = {"device": dynamics.SOLAR_SAIL, "device_parameters": (0.05, 0, 1, 0)}
+    wires = {"device": dynamics.ELECTRIC_SAIL, "device_parameters": (1e-12, 0, 1)}
+    push = {"device": dynamics.THRUSTER, "device_parameters": (1e-3, 0, 0)}
+    for more, integrator in (
+        (film | {"steering": attitude.ORBITAL, "steering_parameters": (1, 0, 0)}, "collocation"),
+        (film | {"steering": attitude.PRIMER}, "collocation"),  # a sail that is steered for the most thrust never stops
+        (wires | {"steering": attitude.PRIMER}, "dop853"),  # its wires do
+        (film | {"steering": attitude.LYAPUNOV}, "dop853"),
+        (film | {"steering": attitude.INERTIAL}, "dop853"),  # edge-on twice a turn
+        (film | {"steering": attitude.TANGENTIAL}, "dop853"),
+        (push | {"steering": attitude.INERTIAL}, "collocation"),
+        (push | {"steering": attitude.TANGENTIAL}, "collocation"),
+        ({"user_force": 1}, "dop853"),
+        ({"device": dynamics.CALLED}, "dop853"),
+    ):
+        assert choice.choose(dynamics.model(1.0, **more), **sun).integrator == integrator
+        assert choice.choose(dynamics.model(1.0, **more), **sun, wanted="collocation").integrator == "collocation"
 
 
 def test_what_the_multistep_method_cannot_do_is_refused_with_the_reason():

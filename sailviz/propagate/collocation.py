@@ -91,6 +91,8 @@ POLYNOMIAL = 28  # rows of Integration.work from here on: coefficients of the la
 SWEEPS = 9  # place in Integration.counter, after those that all integrators have
 
 
+# copied: a flight of some tens of microseconds is not to wait for its memory
+_WORK, _NODES, _NO_SIGNS = np.zeros((POLYNOMIAL + POWERS, SIZE)), np.zeros(LENGTH), np.zeros(0)
 _BEGUN = np.zeros(10, dtype=np.int64)
 _BEGUN[IN_USE] = 1
 
@@ -107,12 +109,14 @@ class Collocation(NamedTuple):
 
 def start(t, position, velocity, mass, events=0) -> Collocation:
     """A fresh Collocation at time s, position m, velocity m/s, mass kg, with room for a number of events."""
-    work = np.zeros((POLYNOMIAL + POWERS, SIZE))
-    work[Y] = (*position, *velocity, mass)
+    work, nodes = _WORK.copy(), _NODES.copy()
+    y = work[Y]
+    y[:3], y[3:6], y[6] = position, velocity, mass
     work[CLOCK, TIME] = t
-    count = _BEGUN.copy()
-    event = np.empty((MOST_EVENTS * (events > 0) + MOST_SAMPLES * events + 1, 9))
-    return Collocation(work, count, np.zeros(events), event, np.zeros(LENGTH))
+    if events == 0:
+        return Collocation(work, _BEGUN.copy(), _NO_SIGNS, np.empty((1, 9)), nodes)
+    event = np.empty((MOST_EVENTS + MOST_SAMPLES * events + 1, 9))
+    return Collocation(work, _BEGUN.copy(), np.zeros(events), event, nodes)
 
 
 def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step, patience=None) -> int:

@@ -345,25 +345,27 @@ def keep_end(nodes, work, h, burns, fits):
 
 @inlined
 def fill_rows(nodes, t_out, out, first, last):
-    """Rows first..last of out (components, n) at the times t_out (n,) from the polynomial of the last step, eight at
-    once as far as there is room for eight."""
+    """Rows first..last of out (components, n) at the times t_out (n,) from the polynomial of the last step, sixteen at
+    once as far as there is room for them: what is filled beyond the step is overwritten by the next."""
     middle, inverse = nodes[MIDDLE], 1.0 / nodes[HALF]
-    for j in range(out.shape[0]):
-        m = DENSE + POWERS * j
-        m0, m1, m2, m3, m4 = nodes[m], nodes[m + 1], nodes[m + 2], nodes[m + 3], nodes[m + 4]
-        m5, m6, m7, m8, m9 = nodes[m + 5], nodes[m + 6], nodes[m + 7], nodes[m + 8], nodes[m + 9]
-        row = out[j]
-        i = first
-        while i < last:
-            whole = i + 8 <= len(t_out)
-            s = ((load(t_out, i) if whole else spread(t_out[i])) - middle) * inverse
-            p = m0 + s * (m1 + s * (m2 + s * (m3 + s * (m4 + s * (m5 + s * (m6 + s * (m7 + s * (m8 + s * m9))))))))
-            if whole:
+    i = first
+    while i < last:
+        several = i + 16 <= len(t_out)
+        a = ((load(t_out, i) if several else spread(t_out[i])) - middle) * inverse
+        b = ((load(t_out, i + 8) if several else spread(t_out[i])) - middle) * inverse
+        for j in range(out.shape[0]):
+            m = DENSE + POWERS * j + POWERS - 1
+            p, q = nodes[m - 1] + a * nodes[m], nodes[m - 1] + b * nodes[m]
+            for k in range(2, POWERS):
+                c = nodes[m - k]
+                p, q = c + a * p, c + b * q
+            if several:
+                row = out[j]
                 store(row, i, p)
-                i += 8
+                store(row, i + 8, q)
             else:
-                row[i] = lane(p)
-                i += 1
+                out[j, i] = lane(p)
+        i += 16 if several else 1
 
 
 @inlined

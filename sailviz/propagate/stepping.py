@@ -88,7 +88,7 @@ def in_pieces(compiled_advance, s, model, arguments, t_out, out, numbers, patien
     compiled_advance : takes s, the parameters, the arguments, the rows, the numbers (end of the run, tolerance, largest
     step) and the number of steps to try before it pauses. out : may be part of a larger array.
     """
-    rows = np.ascontiguousarray(out)
+    rows = out if out.flags.c_contiguous else np.ascontiguousarray(out)
     status = _in_pieces(compiled_advance, s, model, (*arguments, t_out, rows, *numbers), numbers[0], patience)
     if rows is not out:
         out[:] = rows

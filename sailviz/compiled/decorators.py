@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, update_wrapper
 from importlib import import_module
 from typing import Any
@@ -62,7 +62,21 @@ def _njit(function: Callable[..., Any], **options: Any) -> Late:
         with_all: Any = numba.njit  # some of the options are in no stub
         return with_all(**options, **more)(function)
 
-    return Late(make, function, lambda: make(**BARE))
+    return Late(make, function, lambda: _once(make(**BARE)))
+
+
+def _once(dispatcher: Any) -> Any:
+    """Let a function be compiled once for all numbers, where numba would compile it anew for each that is written down
+    in a call: the optimiser, which merges it into its caller, finds them all the same."""
+    from numba.core.types import unliteral
+
+    template = dispatcher.get_call_template
+
+    def general(arguments: Sequence[Any], named: Mapping[str, Any]) -> Any:
+        return template(tuple(map(unliteral, arguments)), {name: unliteral(one) for name, one in named.items()})
+
+    dispatcher.get_call_template = general
+    return dispatcher
 
 
 def inlined(function: Callable[..., Any]) -> Late:

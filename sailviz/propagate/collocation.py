@@ -174,39 +174,11 @@ def advance_compiled(
             break
         limit = next_limit(breaks, interval, t_end)
         r, bearable, agreed = bounds(y, mu, tolerance, nodes[SPAN])
-        wish, rejected, grow = clock[STEP], False, 1.0
-        while True:
-            h = min(wish, largest_step)
-            landing = t + 1.01 * h >= limit
-            h = limit - t if landing else (t + h) - t  # exactly what the time will have moved
-            if h <= 4.0e-16 * max(abs(t), abs(t_end)) and not landing:
-                count[STATUS] = UNDERFLOW
-                break
-            if varies and is_table(p.kinds.steering):
-                prepare(nodes, t, h, factor, p)
-            enough = agreed / (h * h)
-            fits, sweeps = sweep(nodes, work, t, h, enough * enough, at_once, burns, factor, p)
-            count[SWEEPS] += sweeps
-            error = missing(nodes, h, r, y[6], burns) / bearable if fits else np.inf
-            if error <= BEARABLE:
-                grow = growth(nodes, h, error, rejected)
-                break
-            if error < np.inf:
-                wish = h * growth(nodes, h, error, True)
-            else:
-                # leave a singular spot slowly; give up when even a tiny step is not finite
-                wish = 0.3 * h
-                if wish <= 4.0e-14 * max(abs(t), abs(t_end)):
-                    count[STATUS] = NOT_FINITE
-                    break
-            rejected = True
-            count[REJECTED] += 1
+        h, landing = attempt(
+            s, nodes, t, limit, r, bearable, agreed, largest_step, t_end, at_once, varies, burns, factor, p
+        )
         if count[STATUS] != DONE:
             break
-        nodes[LAST_STEP], nodes[LAST_ERROR] = h, error
-        # a step cut short by a landing must not shorten the next one
-        clock[STEP] = max(h * grow, wish) if landing and not rejected else h * grow
-        count[STEPS] += 1
         t0 = t
         t = limit if landing else t + h
         keep_polynomial(nodes, work, t0, h, burns)
@@ -223,7 +195,7 @@ def advance_compiled(
             h = t - t0
             if varies and is_table(p.kinds.steering):
                 prepare(nodes, t0, h, factor, p)
-            fits = h > 0.0 and sweep(nodes, work, t0, h, enough * enough, at_once, burns, factor, p)[0]
+            fits = h > 0.0 and sweep(nodes, work, t0, h, (agreed / (h * h)) ** 2, at_once, burns, factor, p)[0]
             if fits:
                 keep_polynomial(nodes, work, t0, h, burns)
         keep_end(nodes, work, h, burns, fits)
@@ -235,6 +207,44 @@ def advance_compiled(
         factor = new_factor
         ended = count[STATUS] != DONE
     return close_block(s, t_out, row, ended)
+
+
+@inlined
+def attempt(s, nodes, t, limit, r, bearable, agreed, largest_step, t_end, at_once, varies, burns, factor, p):
+    """One accepted step from t towards limit, or counter[STATUS] saying why there is none. Returns (h, whether it lands
+    on the limit)."""
+    count, clock = s.counter, s.work[CLOCK]
+    wish, rejected = clock[STEP], False
+    smallest = max(abs(t), abs(t_end))
+    while True:
+        h = min(wish, largest_step)
+        landing = t + 1.01 * h >= limit
+        h = limit - t if landing else (t + h) - t  # exactly what the time will have moved
+        if h <= 4.0e-16 * smallest and not landing:
+            count[STATUS] = UNDERFLOW
+            return h, landing
+        if varies and is_table(p.kinds.steering):
+            prepare(nodes, t, h, factor, p)
+        fits, sweeps = sweep(nodes, s.work, t, h, (agreed / (h * h)) ** 2, at_once, burns, factor, p)
+        count[SWEEPS] += sweeps
+        error = missing(nodes, h, r, s.work[Y, 6], burns) / bearable if fits else np.inf
+        if error <= BEARABLE:
+            break
+        if error < np.inf:
+            wish = h * growth(nodes, h, error, True)
+        else:
+            wish = 0.3 * h  # leave a singular spot slowly; give up when even a tiny step is not finite
+            if wish <= 4.0e-14 * smallest:
+                count[STATUS] = NOT_FINITE
+                return h, landing
+        rejected = True
+        count[REJECTED] += 1
+    grown = h * growth(nodes, h, error, rejected)
+    # a step cut short by a landing must not shorten the next one
+    clock[STEP] = max(grown, wish) if landing and not rejected else grown
+    nodes[LAST_STEP], nodes[LAST_ERROR] = h, error
+    count[STEPS] += 1
+    return h, landing
 
 
 @inlined
@@ -271,7 +281,7 @@ def bounds(y, mu, tolerance, span):
 @inlined
 def growth(nodes, h, error, rejected):
     """By how much the next step may be longer, from the error of this one and how it has changed since the last."""
-    if error == 0.0:
+    if not error > 0.0:
         return GROW_MOST
     grow = SAFETY * error ** (-1.0 / ORDER)
     before = nodes[LAST_ERROR]

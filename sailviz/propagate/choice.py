@@ -87,6 +87,8 @@ def _without_equal_steps(model) -> Choice:
     sail = device in (SOLAR_SAIL, ELECTRIC_SAIL)
     if _kinked(p) or p.callbacks.edges:
         return Choice(DOP853, "a force read from tables or switched by the shadow has kinks")
+    if p.third_body.mu != 0.0:  # of whose pull the correction between two sweeps of collocation knows nothing
+        return Choice(DOP853, "a body besides the central one may be passed closely")
     if p.callbacks.user_steering or p.callbacks.user_force or device == CALLED or steering == attitude.CALLED:
         return Choice(DOP853, "a function of one's own may jump")
     if steering in (attitude.LOCAL, attitude.LYAPUNOV) or (steering == attitude.PRIMER and device != SOLAR_SAIL):

@@ -32,8 +32,12 @@ def flown(model, position, velocity, times, tolerance, *, method=collocation, ev
 
 
 def errs(states, exact):
-    """The largest error of the positions, over the distance."""
-    return float((np.linalg.norm(states[:3] - exact[:3], axis=0) / np.linalg.norm(exact[:3], axis=0)).max())
+    """The largest error of the positions, over the distance, or of the velocities, over the larger of speed and
+    circular speed."""
+    wrong = states - exact
+    distance, speed = np.linalg.norm(exact[:3], axis=0), np.linalg.norm(exact[3:], axis=0)
+    place = np.linalg.norm(wrong[:3], axis=0) / distance
+    return float(np.max([place, np.linalg.norm(wrong[3:], axis=0) / np.maximum(speed, distance**-0.5)]))
 
 
 def ellipse(e, mu=1.0):
@@ -47,7 +51,9 @@ def ellipse(e, mu=1.0):
         for _ in range(60):
             anomaly = anomaly - (anomaly - e * np.sin(anomaly) - mean) / (1 - e * np.cos(anomaly))
         x, y = np.cos(anomaly) - e, np.sqrt(1 - e * e) * np.sin(anomaly)
-        return axis * np.stack([x, y, 0 * x])
+        speed = rate / (1 - e * np.cos(anomaly))
+        u, v = -speed * np.sin(anomaly), speed * np.sqrt(1 - e * e) * np.cos(anomaly)
+        return axis * np.stack([x, y, 0 * x, u, v, 0 * x])
 
     return ((1.0, 0, 0), (0, np.sqrt(mu * (1 + e)), 0)), exact
 
@@ -75,10 +81,12 @@ def spiral():
     model = ideal_sail(lightness, attitude.ORBITAL, *attitude.direction_parameters(pitch, np.pi / 2))
 
     def exact(times):
-        # r dr = g k^(1/2) r^(1/2) dt
+        # dr/dt = g (k / r)^(1/2)
         r = (1 + 1.5 * g * np.sqrt(k) * times) ** (2 / 3)
         theta = np.log(r) / g
-        return np.stack([r * np.cos(theta), r * np.sin(theta), 0 * r])
+        outwards, around = np.array([np.cos(theta), np.sin(theta)]), np.array([-np.sin(theta), np.cos(theta)])
+        velocity = np.sqrt(k / r) * (g * outwards + around)
+        return np.stack([*(r * outwards), 0 * r, *velocity, 0 * r])
 
     return model, ((1.0, 0, 0), (g * np.sqrt(k), np.sqrt(k), 0)), exact
 
@@ -98,7 +106,8 @@ def displaced():
     model = ideal_sail(lightness, attitude.MERIDIAN, cosine, 0.0, normal @ north)
 
     def exact(times):
-        return np.stack([np.cos(rate * times), np.sin(rate * times), height + 0 * times])
+        c, s = np.cos(rate * times), np.sin(rate * times)
+        return np.stack([c, s, height + 0 * times, -rate * s, rate * c, 0 * times])
 
     return model, (place, (0, rate, 0)), exact
 

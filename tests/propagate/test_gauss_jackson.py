@@ -313,6 +313,7 @@ def test_what_may_jump_unforeseen_is_left_to_dop853():
         (film | {"steering": attitude.TANGENTIAL}, "dop853"),
         (push | {"steering": attitude.INERTIAL}, "collocation"),
         (push | {"steering": attitude.TANGENTIAL}, "collocation"),
+        ({"third_body": (1e-3, 1.0, 1.0, 0.0)}, "dop853"),
         ({"user_force": 1}, "dop853"),
         ({"device": dynamics.CALLED}, "dop853"),
     ):

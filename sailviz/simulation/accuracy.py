@@ -89,7 +89,7 @@ def accuracy_in_words(p: Plan, measure: bool) -> str:
         )
     elif p.choice.integrator == COLLOCATION:
         how = (
-            f"Gauss-Legendre collocation of order 16, in steps that keep positions to {tolerance:g} of the distance, "
+            f"Gauss-Legendre collocation of order 16, in steps that keep positions and velocities to {tolerance:g}, "
             "float64."
         )
     else:

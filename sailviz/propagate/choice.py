@@ -1,8 +1,9 @@
 """Which integrator suits a run: collocation for smooth flights, the multistep method for many revolutions close to a
 body, DOP853 where the forces may have kinks that no schedule knows.
 
-Measured on the shipped scenes at equal tolerance: collocation takes 0.2 to 0.9 of the time of DOP853 and errs less, but
-its steps see the forces at eight places only, and what jumps between the last of them and the end of a step is missed.
+Measured on the shipped scenes at equal tolerance: collocation takes 0.2 to 0.9 of the time of DOP853 and errs as
+little or less, but its steps see the forces at eight places only, and what jumps between the last of them and the end
+of a step is missed.
 """
 
 from __future__ import annotations

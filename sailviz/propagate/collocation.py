@@ -70,16 +70,10 @@ from sailviz.propagate.stepping import (
 from sailviz.propagate.stepping import DONE as DONE
 from sailviz.propagate.stepping import EVENTS_FULL as EVENTS_FULL
 from sailviz.propagate.stepping import NOT_FINITE as NOT_FINITE
-from sailviz.propagate.stepping import STOPPED as STOPPED
-from sailviz.propagate.stepping import SURFACE as SURFACE
 from sailviz.propagate.stepping import UNDERFLOW as UNDERFLOW
 from sailviz.propagate.stepping import drain_events as drain_events
-from sailviz.propagate.stepping import in_use as in_use
 from sailviz.propagate.stepping import rows_done as rows_done
-from sailviz.propagate.stepping import state as state
 from sailviz.propagate.stepping import statistics as statistics
-from sailviz.propagate.stepping import stopped_by as stopped_by
-from sailviz.propagate.stepping import time as time
 from sailviz.propulsion.devices import CALLED, NO_DEVICE, THRUSTER
 
 MOST_SAMPLES = 16  # of a step, when events are looked for
@@ -121,8 +115,8 @@ def start(t, position, velocity, mass, events=0) -> Collocation:
 
 def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step, patience=None) -> int:
     """Integrate until every row of the block is filled, or until something ends the run: as dop853.advance, in every
-    argument and status. tolerance : of the position over the distance, and of the velocity
-    over the speed, of every row."""
+    argument and status. tolerance : of the position over the distance, and of the velocity over the larger of speed and
+    circular speed, in every row."""
     numbers = t_end, tolerance, largest_step
     return in_pieces(advance_compiled, s, model, (breaks, factors, *watch), t_out, out, numbers, patience)
 

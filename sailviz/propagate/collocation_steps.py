@@ -200,7 +200,8 @@ def first_guess(nodes, t, h, y, mu):
 @inlined
 def corrected(nodes, x, y, z, rx, ry, rz, h2, mu):
     """The change of the accelerations that makes them fit the path, from what they lack now, to first order in the
-    central attraction: everything else changes a hundred times less. It is two thirds of a sweep cheaper than one."""
+    central attraction: everything else changes a hundred times less. It costs a third of a sweep and spares four in
+    ten (on the sail of tests/bench 117 are left of 184)."""
     cx, cy, cz = rx, ry, rz
     inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
     inverse2 = inverse * inverse
@@ -242,9 +243,7 @@ def sweep(nodes, work, t, h, enough, at_once, burns, factor, p):
             gx, gy, gz = forces_one_by_one(nodes, work, t, h, x, yy, z, vx, vy, vz, factor, p, burns)
         cx, cy, cz = corrected(nodes, x, yy, z, gx - fx, gy - fy, gz - fz, h2, p.gravity.mu)
         change = total((gx - fx) * (gx - fx) + (gy - fy) * (gy - fy) + (gz - fz) * (gz - fz))
-        if (
-            burns
-        ):  # the mass rate counts as much as the accelerations: its share of the mass like theirs of the distance
+        if burns:  # the mass rate counts as the accelerations do: its share of the mass like theirs of the distance
             share = load(nodes, MASS) - load(nodes, FORCE + 24)
             weight = np.sqrt(x0 * x0 + y0 * y0 + z0 * z0) / (h * y[6])
             change += weight * weight * total(share * share)

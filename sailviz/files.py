@@ -12,7 +12,7 @@ import shutil
 import stat
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -169,10 +169,19 @@ def lacking(part: Path) -> str:
 
 def sweep(target: Path) -> None:
     """Remove the parts that dead runs left beside a file: made by no living process and held by none."""
-    for part in target.parent.glob(f".{_escaped(target.name)}.*.part"):
+    _remove_dead(target.parent.glob(f".{_escaped(target.name)}.*.part"), LEFTOVER_AGE)
+
+
+def sweep_folder(folder: Path) -> None:
+    """Remove all parts of dead runs from a folder that belongs to one run, however young they are."""
+    _remove_dead(folder.glob(".*.part"), 0.0)
+
+
+def _remove_dead(parts: Iterable[Path], age: float) -> None:
+    for part in parts:
         word = part.name.rsplit(".", 2)[1]
         try:
-            if not word.isdecimal() or _alive(int(word)) or time.time() - part.stat().st_mtime < LEFTOVER_AGE:
+            if not word.isdecimal() or _alive(int(word)) or time.time() - part.stat().st_mtime < age:
                 continue
             handle = os.open(part, os.O_RDWR)
         except OSError:

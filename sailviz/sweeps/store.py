@@ -211,6 +211,7 @@ class FileStore(MemoryStore):
         """Remove what this sweep put beside its table, and nothing else."""
         for file in [*parts, self._note]:
             file.unlink(missing_ok=True)
+        files.sweep_folder(self._parts)  # a process that was killed may have been writing just then
         with suppress(OSError):  # not there, or something else lies in it
             self._parts.rmdir()
 

@@ -332,6 +332,21 @@ def long_rows():
     )
 
 
+def test_a_process_killed_while_it_wrote_leaves_nothing_beside_the_finished_table(tmp_path):
+    path, parts = tmp_path / "gusts.parquet", tmp_path / "gusts.parquet.parts"
+    dead = subprocess.Popen([sys.executable, "-c", ""])
+    dead.wait()
+    parts.mkdir()
+    for name in ("000000000003-2.parquet", "definition.json"):
+        (parts / f".{name}.{dead.pid}.part").write_bytes(b"PAR1 half of it")
+    (parts / f".000000000005-2.parquet.{os.getpid()}.part").write_bytes(b"a living process writes here")
+    sailviz.sweep(**GUSTS, engine="serial", path=path)
+    assert [file.name for file in parts.iterdir()] == [f".000000000005-2.parquet.{os.getpid()}.part"]
+    (parts / f".000000000005-2.parquet.{os.getpid()}.part").unlink()
+    parts.rmdir()
+    assert list(tmp_path.iterdir()) == [path]
+
+
 def _begin(folder, *words):
     """A sweep in a process of its own, once two parts of it are on disk."""
     environment = os.environ | {"PYTHONPATH": str(Path(sailviz.__file__).parents[1])}

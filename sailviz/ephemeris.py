@@ -13,6 +13,7 @@ import numpy as np
 
 from sailviz.constants import AU, DAY, MU_SUN, YEAR
 from sailviz.elements import Elements, state
+from sailviz.frames import OBLIQUITY
 
 if TYPE_CHECKING:
     from datetime import datetime
@@ -114,7 +115,6 @@ def planet_position(name: str, epoch: Epoch, time: ArrayLike, source: str = "mea
 
 _DE421_NUMBERS = {"Mercury": 1, "Venus": 2, "Earth": 3, "Mars": 4, "Jupiter": 5, "Saturn": 6}
 TT_MINUS_UTC = 69.184  # s, since 2017 and until the next leap second: IERS Bulletin C
-OBLIQUITY_J2000 = np.radians(84381.448 / 3600)  # rad, IAU 1976, the obliquity of the mean elements' ecliptic
 
 
 @cache
@@ -139,7 +139,7 @@ def _de421(name: str, seconds: np.ndarray) -> np.ndarray:
     if days.min() < planet.start_jd or days.max() > planet.end_jd:
         raise ValueError("DE421 reaches from 1899-07-29 to 2053-10-09, and this run goes beyond")
     x, y, z = 1e3 * (planet.compute(days) - sun.compute(days))[:3]
-    c, s = np.cos(OBLIQUITY_J2000), np.sin(OBLIQUITY_J2000)
+    c, s = np.cos(OBLIQUITY), np.sin(OBLIQUITY)
     return np.column_stack([x, c * y + s * z, c * z - s * y])
 
 

@@ -135,13 +135,14 @@ def centuries_since_j2000(utc: np.datetime64) -> float:
     return float((utc - np.datetime64("2000-01-01T11:58:55.816", "ns")) / np.timedelta64(1, "s")) / (36_525 * 86_400)
 
 
-def precession(centuries: float) -> np.ndarray:
-    """Rotation (3, 3) from the mean equator and equinox of J2000 to that of a date, Julian centuries of TT since J2000.
+def precession(centuries: ArrayLike) -> np.ndarray:
+    """Rotation (..., 3, 3) from the mean equator and equinox of J2000 to that of a date, Julian centuries (...,) of TT
+    since J2000.
 
     IAU 2006 precession, the angles zeta, z, theta of N. Capitaine, P. T. Wallace, J. Chapront, A&A 412, 567 (2003),
     equation (40); nutation (up to 19 arcsec) and the frame bias (0.02 arcsec) are neglected.
     """
-    t = centuries
+    t = np.asarray(centuries, dtype=float)
     zeta = 2.650545 + t * (2306.083227 + t * (0.2988499 + t * (0.01801828 - t * (5.971e-6 + t * 3.173e-7))))
     z = -2.650545 + t * (2306.077181 + t * (1.0927348 + t * (0.01826837 - t * (2.8596e-5 + t * 2.904e-7))))
     theta = t * (2004.191903 - t * (0.4294934 + t * (0.04182264 + t * (7.089e-6 + t * 1.274e-7))))
@@ -149,13 +150,60 @@ def precession(centuries: float) -> np.ndarray:
     return found
 
 
-def _turn_z(angle: float) -> np.ndarray:
-    """Components of a vector in axes turned by an angle, rad, about z."""
-    c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+def _turns(rows: list[list[np.ndarray]]) -> np.ndarray:
+    """Matrices (..., 3, 3) from their elements (...,), row by row."""
+    return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
 
 
-def _turn_y(angle: float) -> np.ndarray:
-    """Components of a vector in axes turned by an angle, rad, about y."""
+def _turn_x(angle: ArrayLike) -> np.ndarray:
+    """Components (..., 3, 3) of a vector in axes turned by angles (...,) rad about x."""
     c, s = np.cos(angle), np.sin(angle)
-    return np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]])
+    zero, one = np.zeros_like(c), np.ones_like(c)
+    return _turns([[one, zero, zero], [zero, c, s], [zero, -s, c]])
+
+
+def _turn_y(angle: ArrayLike) -> np.ndarray:
+    """The same about y."""
+    c, s = np.cos(angle), np.sin(angle)
+    zero, one = np.zeros_like(c), np.ones_like(c)
+    return _turns([[c, zero, -s], [zero, one, zero], [s, zero, c]])
+
+
+def _turn_z(angle: ArrayLike) -> np.ndarray:
+    """The same about z."""
+    c, s = np.cos(angle), np.sin(angle)
+    zero, one = np.zeros_like(c), np.ones_like(c)
+    return _turns([[c, s, zero], [-s, c, zero], [zero, zero, one]])
+
+
+FRAMES = ("ecliptic-j2000", "icrf", "equator-of-date")
+
+
+def icrf_to(frame: str, centuries: float = 0.0) -> np.ndarray:
+    """R (3, 3) that takes vectors of the ICRF, which counts as equator and equinox of J2000, to a frame of FRAMES.
+
+    "equator-of-date" is the mean equator and equinox at that many Julian centuries of TT since J2000, held fixed: the
+    pole moves 20 arcsec a year in it. ValueError for another word.
+    """
+    if frame == "icrf":
+        return np.eye(3)
+    if frame == "ecliptic-j2000":
+        return EQUATOR_FROM_ECLIPTIC.T
+    if frame == "equator-of-date":
+        return precession(centuries)
+    raise ValueError(f"{frame!r} is no frame; there are {', '.join(FRAMES)}")
+
+
+def obliquity_of_date(centuries: ArrayLike) -> np.ndarray:
+    """Angle (...,) rad between the mean equator and the ecliptic of date, Julian centuries (...,) of TT after J2000:
+    IAU 2006, without terms below 1e-6 arcsec in this century."""
+    t = np.asarray(centuries, dtype=float)
+    found: np.ndarray = (84381.406 + t * (-46.836769 + t * (-0.0001831 + t * 0.00200340))) * _ARCSECOND
+    return found
+
+
+def ecliptic_of_date_to_icrf(centuries: ArrayLike) -> np.ndarray:
+    """R (..., 3, 3) that takes vectors of the ecliptic and mean equinox of date to the ICRF, centuries as above."""
+    to_date = _turn_x(obliquity_of_date(centuries)) @ precession(centuries)
+    found: np.ndarray = np.swapaxes(to_date, -1, -2)
+    return found

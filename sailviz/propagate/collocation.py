@@ -15,25 +15,26 @@ from typing import NamedTuple
 import numpy as np
 
 from sailviz.compiled import entry, inlined
-from sailviz.propagate.collocation_steps import (
+from sailviz.propagate.collocation_forces import fits_lanes, is_table, prepare
+from sailviz.propagate.collocation_memory import (
     CLOSEST,
     LAST_ERROR,
     LAST_STEP,
     LENGTH,
     NODE,
     POWERS,
+    SCALE,
     SPAN,
+    node,
+    store,
+)
+from sailviz.propagate.collocation_steps import (
     by_powers,
     fill_rows,
-    fits_lanes,
-    is_table,
     keep_end,
     keep_polynomial,
     missing,
-    node,
-    prepare,
     rows_before,
-    store,
     sweep,
 )
 from sailviz.propagate.dynamics import SIZE
@@ -79,6 +80,7 @@ from sailviz.propulsion.devices import CALLED, NO_DEVICE, THRUSTER
 MOST_SAMPLES = 16  # of a step, when events are looked for
 SAMPLES_A_RADIAN = 10.0  # of a circular orbit at the distance of the start of the step
 SAFETY, SHRINK_MOST, GROW_MOST, BEARABLE = 0.95, 0.4, 2.0, 1.5  # of the step-size controller
+LONG = 200.0  # rad of the whole run, at the rate of its start, beyond which what rounding takes is kept
 WORST = 2.1  # the largest error that a step within its bounds was seen to make, over them
 ORDER = 9  # of the velocity between the nodes; the position has one more
 POLYNOMIAL = 28  # rows of Integration.work from here on: coefficients of the last step's polynomial in s
@@ -142,7 +144,9 @@ def advance_compiled(
         begin(s, watch, breaks, factors, p)
         store(nodes, NODE, node())
         nodes[SPAN] = t_end - clock[TIME]
+        nodes[SCALE] = np.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
         clock[STEP] = min(first_step(y, mu, tolerance), largest_step)
+    careful = nodes[SPAN] * np.sqrt(mu / nodes[SCALE] ** 3) > LONG
     row, ended = open_block(count)
     pause = count[STEPS] + count[REJECTED] + (piece if piece > 0 else first_piece(p))
     t, interval = clock[TIME], count[INTERVAL]
@@ -170,7 +174,7 @@ def advance_compiled(
         limit = next_limit(breaks, interval, t_end)
         r, bearable, agreed = bounds(y, mu, tolerance, nodes[SPAN])
         h, landing = attempt(
-            s, nodes, t, limit, r, bearable, agreed, largest_step, t_end, at_once, varies, burns, factor, p
+            s, nodes, t, limit, r, bearable, agreed, largest_step, t_end, at_once, varies, burns, careful, factor, p
         )
         if count[STATUS] != DONE:
             break
@@ -190,10 +194,10 @@ def advance_compiled(
             h = t - t0
             if varies and is_table(p.kinds.steering):
                 prepare(nodes, t0, h, factor, p)
-            fits = h > 0.0 and sweep(nodes, work, t0, h, (agreed / (h * h)) ** 2, at_once, burns, factor, p)[0]
+            fits = h > 0.0 and sweep(nodes, work, t0, h, (agreed / (h * h)) ** 2, at_once, burns, careful, factor, p)[0]
             if fits:
                 keep_polynomial(nodes, work, t0, h, burns)
-        keep_end(nodes, work, h, burns, fits)
+        keep_end(nodes, work, h, burns, careful, fits)
         if stop_x < 2.0:
             note_end(s, t, new)
         interval, new_factor, _ = settle(s, breaks, factors, p, t, limit, t_end, stop_x < 2.0, interval, factor)
@@ -205,7 +209,7 @@ def advance_compiled(
 
 
 @inlined
-def attempt(s, nodes, t, limit, r, bearable, agreed, largest_step, t_end, at_once, varies, burns, factor, p):
+def attempt(s, nodes, t, limit, r, bearable, agreed, largest_step, t_end, at_once, varies, burns, careful, factor, p):
     """One accepted step from t towards limit, or counter[STATUS] saying why there is none. Returns (h, whether it lands
     on the limit)."""
     count, clock = s.counter, s.work[CLOCK]
@@ -220,7 +224,7 @@ def attempt(s, nodes, t, limit, r, bearable, agreed, largest_step, t_end, at_onc
             return h, landing
         if varies and is_table(p.kinds.steering):
             prepare(nodes, t, h, factor, p)
-        fits, sweeps = sweep(nodes, s.work, t, h, (agreed / (h * h)) ** 2, at_once, burns, factor, p)
+        fits, sweeps = sweep(nodes, s.work, t, h, (agreed / (h * h)) ** 2, at_once, burns, careful, factor, p)
         count[SWEEPS] += sweeps
         # P_8 integrated once leaves 34 of the 1020 = 34 30
         error = missing(nodes, h, r, s.work[Y, 6], burns) / bearable * (30.0 / h) if fits else np.inf
@@ -271,6 +275,7 @@ def bounds(y, mu, tolerance, span):
     growth = turned * turned * near * near * near
     dense = min(wanted, (wanted / growth) ** 0.625)
     agreed = min(wanted, 1e-6) * 0.01 / ((1.0 + (turned / 50.0) ** 2) * near * near * near)
+    agreed = max(agreed, 2e-17)  # which rounding hides
     return r, dense * max(np.sqrt(v2), np.sqrt(mu / r)), agreed * r
 
 

@@ -13,162 +13,55 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.compiled import inlined, late
-from sailviz.constants import AU
-from sailviz.environment.gravity import gravity
-from sailviz.propagate.dynamics import SIZE, derivative
-from sailviz.propagate.gauss_legendre import tables
-from sailviz.propagate.parameters import array_at
-from sailviz.propagate.stepping import NEW, W, Y
-from sailviz.propulsion.devices import ELECTRIC_SAIL, NO_DEVICE, SOLAR_SAIL
-from sailviz.propulsion.electric_sail import ORIGINAL, esail_parts
-from sailviz.propulsion.solar_sail import sail_parts
-from sailviz.steering import attitude
-
-POWERS = 10  # of s = 2 x - 1 in the polynomial of a step, x its share that is over
-
-# places in the row of numbers `nodes`, eight numbers each
-FORCE = 0  # accelerations x, y, z at the nodes and the mass rate
-BEFORE = 32  # of the last step: monomial coefficients in s of the same
-PLACE = 64  # positions and velocities at the nodes, where the force is evaluated one by one
-PARTS = 112  # of the thrust at the nodes: along r_hat and along the normal, as at unit distance; the normal's direction
-REST = 152  # what rounding left of position, velocity and mass at the start of the step
-MIDDLE, HALF, HELD = 160, 161, 162  # of the last step: its middle, s, half of its length, s; whether there is one
-CLOSEST = 163  # m, least distance from the centre of the last step's nodes
-LAST_STEP, LAST_ERROR = 164, 165  # of the last step that was not cut: its length, s, its error over what is bearable
-SPAN = 166  # s, of the whole run
-NODE = 168  # x of the nodes
-MASS = 176  # mass and its rate at the nodes
-CHANGE = 192  # of the accelerations at the nodes
-DENSE = 216  # (SIZE, POWERS) monomial coefficients in s of the last step's polynomial
-LENGTH = 288
+from sailviz.compiled import inlined
+from sailviz.propagate.collocation_forces import forces_at_once, forces_one_by_one
+from sailviz.propagate.collocation_memory import (
+    BEFORE,
+    CHANGE,
+    CLOSEST,
+    DENSE,
+    FORCE,
+    HALF,
+    HELD,
+    MASS,
+    MIDDLE,
+    NODE,
+    PLACE,
+    POWERS,
+    REST,
+    across_1,
+    across_2,
+    across_4,
+    end_position,
+    end_position_left,
+    end_velocity,
+    end_velocity_left,
+    highest,
+    lane,
+    load,
+    monomials,
+    node,
+    node_left,
+    once,
+    once_left,
+    position_sum,
+    position_sum_left,
+    product_left,
+    second,
+    smallest,
+    spread,
+    store,
+    total,
+    twice,
+    twice_left,
+    velocity_sum,
+)
+from sailviz.propagate.dynamics import SIZE
+from sailviz.propagate.stepping import NEW, Y
 
 MOST_SWEEPS = 25
 ROUNDING = 1e-28  # of accelerations, squared, over themselves: no sweep makes it smaller
 CORRECTIONS = 1  # to first order, after each evaluation of the forces
-
-LANES = "sailviz.propagate.lanes"
-load, store, spread, lane = (late(LANES, name) for name in ("load", "store", "spread", "first"))
-total, smallest = late(LANES, "total"), late(LANES, "smallest")
-
-node = late(LANES, "constant", lambda: tables().node)
-end_velocity = late(LANES, "constant", lambda: tables().end_velocity)
-end_position = late(LANES, "constant", lambda: tables().end_position)
-second, highest = (late(LANES, "constant", lambda k=k: tables().highest[k]) for k in (0, 1))
-velocity_sum = late(LANES, "product_with", lambda: tables().velocity)
-position_sum = late(LANES, "product_with", lambda: tables().position)
-monomials = late(LANES, "product_with", lambda: tables().monomial)
-# integrals of s^k, and what makes them begin at s = -1
-once = late(LANES, "constant", lambda: 1 / np.arange(1.0, 9.0))
-twice = late(LANES, "constant", lambda: 1 / (np.arange(1.0, 9.0) * np.arange(2.0, 10.0)))
-once_left = late(LANES, "constant", lambda: (-1.0) ** np.arange(8) / np.arange(1.0, 9.0))
-twice_left = late(LANES, "constant", lambda: (-1.0) ** np.arange(8) / (np.arange(1.0, 9.0) * np.arange(2.0, 10.0)))
-
-
-@inlined
-def fits_lanes(p):
-    """Whether the forces of a record of PARAMETERS can be evaluated at eight nodes at once."""
-    device, steering, callbacks = p.kinds.device, p.kinds.steering, p.callbacks
-    if p.third_body.mu != 0.0 or p.air.kind != 0 or callbacks.forces != 0 or callbacks.user_force != 0:
-        return False
-    if device == NO_DEVICE:
-        return True
-    if device != SOLAR_SAIL and device != ELECTRIC_SAIL:
-        return False
-    return is_table(steering) or (
-        steering == attitude.RADIAL
-        or steering == attitude.ORBITAL
-        or steering == attitude.MERIDIAN
-        or steering == attitude.TRANSVERSE
-    )
-
-
-@inlined
-def is_table(steering):
-    return steering == attitude.TABLE_ORBITAL or steering == attitude.TABLE_MERIDIAN
-
-
-@inlined
-def prepare(nodes, t, h, factor, p):
-    """The parts of the thrust at the nodes of [t, t + h], and the normal's components in its frame: they depend on
-    time alone."""
-    n_r, n_t, n_h = 1.0, 0.0, 0.0
-    kind, device, throttle = p.kinds.steering, p.kinds.device, 1.0
-    if kind == attitude.ORBITAL or kind == attitude.MERIDIAN:
-        n_r, n_t, n_h = p.components.radial, p.components.transverse, p.components.normal
-    elif kind == attitude.TRANSVERSE:
-        n_r, n_t = 0.0, 1.0
-    for i in range(8):
-        if is_table(kind):
-            alpha, delta, throttle = attitude.table_row(
-                t + h * nodes[NODE + i], array_at(p.places.address, p.places.end), p.places.steering, p.table.rows,
-                p.table.interpolation,
-            )  # fmt: skip
-            n_r, n_t, n_h = np.cos(alpha), np.sin(alpha) * np.sin(delta), np.sin(alpha) * np.cos(delta)
-        along, across = 0.0, 0.0
-        if device == SOLAR_SAIL:
-            sail = p.solar_sail
-            along, across = sail_parts(n_r, factor * throttle * sail.strength, sail.b1, sail.b2, sail.b3)
-        elif device == ELECTRIC_SAIL:
-            esail = p.electric_sail
-            ac = factor * throttle * esail.characteristic_acceleration
-            along, across = esail_parts(n_r, ac, int(esail.model), esail.pitch_limit)
-        if kind == attitude.RADIAL:
-            along, across = along + across, 0.0
-        nodes[PARTS + i], nodes[PARTS + 8 + i] = along, across
-        nodes[PARTS + 16 + i], nodes[PARTS + 24 + i], nodes[PARTS + 32 + i] = n_r, n_t, n_h
-
-
-@inlined
-def forces_at_once(nodes, x, y, z, vx, vy, vz, factor, p):
-    """Accelerations at the nodes, of the forces that `fits_lanes` allows."""
-    inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
-    g = p.gravity
-    ax, ay, az = gravity(x, y, z, inverse, g.mu, g.j2_strength, g.j3_strength, g.j4_strength)
-    if p.kinds.device == NO_DEVICE or factor == 0.0:
-        return ax, ay, az
-    if p.kinds.device == SOLAR_SAIL:
-        fall = inverse * inverse
-    elif p.electric_sail.model == ORIGINAL:
-        fall = (AU * inverse) ** (7.0 / 6.0)
-    else:
-        fall = AU * inverse
-    ux, uy, uz = x * inverse, y * inverse, z * inverse
-    along, across = fall * load(nodes, PARTS), fall * load(nodes, PARTS + 8)
-    ax, ay, az = ax + along * ux, ay + along * uy, az + along * uz
-    kind = p.kinds.steering
-    if kind == attitude.RADIAL:
-        return ax, ay, az
-    n_r, n_t, n_h = load(nodes, PARTS + 16), load(nodes, PARTS + 24), load(nodes, PARTS + 32)
-    if kind == attitude.MERIDIAN or kind == attitude.TABLE_MERIDIAN:
-        nx, ny, nz = attitude.meridian_direction(ux, uy, uz, n_r, n_t, n_h)
-    else:
-        nx, ny, nz = attitude.orbital_direction(ux, uy, uz, x, y, z, vx, vy, vz, n_r, n_t, n_h)
-    return ax + across * nx, ay + across * ny, az + across * nz
-
-
-@inlined
-def forces_one_by_one(nodes, work, t, h, x, y, z, vx, vy, vz, factor, p, burns):
-    """The same for every model, and the mass rates."""
-    store(nodes, PLACE, x)
-    store(nodes, PLACE + 8, y)
-    store(nodes, PLACE + 16, z)
-    store(nodes, PLACE + 24, vx)
-    store(nodes, PLACE + 32, vy)
-    store(nodes, PLACE + 40, vz)
-    state, rate = work[W], work[0]
-    mass = work[Y, 6]
-    if burns:
-        store(nodes, MASS, mass + h * velocity_sum(nodes, FORCE + 24))
-    for i in range(8):
-        for j in range(6):
-            state[j] = nodes[PLACE + 8 * j + i]
-        state[6] = nodes[MASS + i] if burns else mass
-        derivative(t + h * nodes[NODE + i], state, factor, p, rate)
-        for j in range(3):
-            nodes[PLACE + 8 * j + i] = rate[3 + j]
-        nodes[MASS + i] = rate[6]
-    return load(nodes, PLACE), load(nodes, PLACE + 8), load(nodes, PLACE + 16)
 
 
 @inlined
@@ -198,28 +91,71 @@ def first_guess(nodes, t, h, y, mu):
 
 
 @inlined
+def steeper(x, y, z, dx, dy, dz, mu):
+    """The change of the central attraction at x, y, z over dx, dy, dz, to first order."""
+    inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
+    inverse2 = inverse * inverse
+    k = -mu * inverse2 * inverse
+    along = 3.0 * inverse2 * (x * dx + y * dy + z * dz)
+    return k * (dx - along * x), k * (dy - along * y), k * (dz - along * z)
+
+
+@inlined
 def corrected(nodes, x, y, z, rx, ry, rz, h2, mu):
     """The change of the accelerations that makes them fit the path, from what they lack now, to first order in the
     central attraction: everything else changes a hundred times less. It costs a third of a sweep and spares four in
     ten (on the sail of tests/bench 117 are left of 184)."""
     cx, cy, cz = rx, ry, rz
-    inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
-    inverse2 = inverse * inverse
-    k = -mu * h2 * inverse2 * inverse
     for _ in range(CORRECTIONS):
         store(nodes, CHANGE, cx)
         store(nodes, CHANGE + 8, cy)
         store(nodes, CHANGE + 16, cz)
         dx, dy, dz = position_sum(nodes, CHANGE), position_sum(nodes, CHANGE + 8), position_sum(nodes, CHANGE + 16)
-        along = 3.0 * inverse2 * (x * dx + y * dy + z * dz)
-        cx, cy, cz = rx + k * (dx - along * x), ry + k * (dy - along * y), rz + k * (dz - along * z)
+        jx, jy, jz = steeper(x, y, z, h2 * dx, h2 * dy, h2 * dz, mu)
+        cx, cy, cz = rx + jx, ry + jy, rz + jz
     return cx, cy, cz
 
 
 @inlined
-def sweep(nodes, work, t, h, enough, at_once, burns, factor, p):
+def two_sum(a, b):
+    """The sum and what rounding takes from it."""
+    s = a + b
+    d = s - a
+    return s, (a - (s - d)) + (b - d)
+
+
+@inlined
+def rounded_away(nodes, work, h, component, x):
+    """What the positions x at the nodes lack by the rounding of tables, products and sums."""
+    place, speed = work[Y, component], work[Y, 3 + component]
+    f = FORCE + 8 * component
+    bend, hc, h2 = position_sum(nodes, f), h * node(), h * h
+    straight, bent = hc * speed, h2 * bend
+    first, e1 = two_sum(spread(place), straight)
+    second, e2 = two_sum(first, bent)
+    lost = product_left(hc, speed, straight) + product_left(node(), h, hc) * speed + product_left(bend, h2, bent)
+    tables_lost = h * (node_left() * speed + h * position_sum_left(nodes, f))
+    before = nodes[REST + component] + hc * nodes[REST + 3 + component]
+    return ((second - x) + (e1 + e2 + lost)) + (tables_lost + before)
+
+
+@inlined
+def exact_total(table, table_left, f, f_left):
+    """The sum of table f to twice the precision: (sum, what it lacks); what the factors lack is given."""
+    p = table * f
+    left = product_left(table, f, p) + (table_left * f + table * f_left)
+    p, e = two_sum(p, across_4(p))  # every sum stands in two places, then in four, in eight: so does what it lacks
+    left = left + 0.5 * e
+    p, e = two_sum(p, across_2(p))
+    left = left + 0.25 * e
+    p, e = two_sum(p, across_1(p))
+    return lane(p), total(left + 0.125 * e)
+
+
+@inlined
+def sweep(nodes, work, t, h, enough, at_once, burns, careful, factor, p):
     """Fit accelerations and path over [t, t + h]. enough : m2/s4, of the change of all accelerations together, squared.
-    Returns whether they agree, and the number of sweeps."""
+    careful : keep what rounding takes. Returns whether they agree, and the number of sweeps."""
     y = work[Y]
     x0, y0, z0, u0, v0, w0 = y[0], y[1], y[2], y[3], y[4], y[5]
     fx, fy, fz = first_guess(nodes, t, h, y, p.gravity.mu)
@@ -238,7 +174,7 @@ def sweep(nodes, work, t, h, enough, at_once, burns, factor, p):
         vy = v0 + h * velocity_sum(nodes, FORCE + 8)
         vz = w0 + h * velocity_sum(nodes, FORCE + 16)
         if at_once:
-            gx, gy, gz = forces_at_once(nodes, x, yy, z, vx, vy, vz, factor, p)
+            gx, gy, gz = forces_at_once(nodes, x, yy, z, vx, vy, vz, y[6], factor, p)
         else:
             gx, gy, gz = forces_one_by_one(nodes, work, t, h, x, yy, z, vx, vy, vz, factor, p, burns)
         cx, cy, cz = corrected(nodes, x, yy, z, gx - fx, gy - fy, gz - fz, h2, p.gravity.mu)
@@ -262,6 +198,26 @@ def sweep(nodes, work, t, h, enough, at_once, burns, factor, p):
         if sweeps >= MOST_SWEEPS or not change < 1e300:
             return False, sweeps
         before = change
+    if careful:
+        lx, ly, lz = (
+            rounded_away(nodes, work, h, 0, x),
+            rounded_away(nodes, work, h, 1, yy),
+            rounded_away(nodes, work, h, 2, z),
+        )
+        store(nodes, CHANGE, fx - load(nodes, FORCE))
+        store(nodes, CHANGE + 8, fy - load(nodes, FORCE + 8))
+        store(nodes, CHANGE + 16, fz - load(nodes, FORCE + 16))
+        dx = h2 * position_sum(nodes, CHANGE) + lx
+        dy = h2 * position_sum(nodes, CHANGE + 8) + ly
+        dz = h2 * position_sum(nodes, CHANGE + 16) + lz
+        jx, jy, jz = steeper(x, yy, z, dx, dy, dz, p.gravity.mu)
+        store(nodes, CHANGE, jx)
+        store(nodes, CHANGE + 8, jy)
+        store(nodes, CHANGE + 16, jz)
+        store(nodes, PLACE, gx)
+        store(nodes, PLACE + 8, gy)
+        store(nodes, PLACE + 16, gz)
+        fx, fy, fz = gx + jx, gy + jy, gz + jz
     store(nodes, FORCE, fx)
     store(nodes, FORCE + 8, fy)
     store(nodes, FORCE + 16, fz)
@@ -320,7 +276,7 @@ def by_powers(nodes, polynomial):
 
 
 @inlined
-def keep_end(nodes, work, h, burns, fits):
+def keep_end(nodes, work, h, burns, careful, fits):
     """The state at the end of the step, in the row NEW, with what rounding leaves of it; where nothing fits it stays as
     it is."""
     y, new = work[Y], work[NEW]
@@ -329,14 +285,30 @@ def keep_end(nodes, work, h, burns, fits):
             nodes[REST + c] = 0.0
         return
     for c in range(3):
-        f = load(nodes, FORCE + 8 * c)
-        rest = nodes[REST + 3 + c]
-        step = h * (y[3 + c] + h * total(end_position() * f)) + (nodes[REST + c] + h * rest)
-        new[c] = y[c] + step
-        nodes[REST + c] = (y[c] - new[c]) + step
-        step = h * total(end_velocity() * f) + rest
-        new[3 + c] = y[3 + c] + step
-        nodes[REST + 3 + c] = (y[3 + c] - new[3 + c]) + step
+        rest, more_rest = nodes[REST + c], nodes[REST + 3 + c]
+        if careful:
+            f, f_left = load(nodes, PLACE + 8 * c), load(nodes, CHANGE + 8 * c)
+            bend, bend_left = exact_total(end_position(), end_position_left(), f, f_left)
+            push, push_left = exact_total(end_velocity(), end_velocity_left(), f, f_left)
+            h2 = h * h
+            straight, bent, pushed = h * y[3 + c], h2 * bend, h * push
+            # h is a number without rounding, its square is not
+            left = product_left(h, y[3 + c], straight) + product_left(h2, bend, bent) + product_left(h, h, h2) * bend
+            left += h2 * bend_left + (rest + h * more_rest)
+            place, e1 = two_sum(y[c], straight)
+            place, e2 = two_sum(place, bent)
+            new[c], nodes[REST + c] = two_sum(place, left + (e1 + e2))
+            speed, e1 = two_sum(y[3 + c], pushed)
+            left = product_left(h, push, pushed) + h * push_left + more_rest
+            new[3 + c], nodes[REST + 3 + c] = two_sum(speed, left + e1)
+        else:
+            f = load(nodes, FORCE + 8 * c)
+            step = h * (y[3 + c] + h * total(end_position() * f)) + (rest + h * more_rest)
+            new[c] = y[c] + step
+            nodes[REST + c] = (y[c] - new[c]) + step
+            step = h * total(end_velocity() * f) + more_rest
+            new[3 + c] = y[3 + c] + step
+            nodes[REST + 3 + c] = (y[3 + c] - new[3 + c]) + step
     new[6] = y[6]
     if burns:
         new[6] = y[6] + h * total(end_velocity() * load(nodes, FORCE + 24))

@@ -29,6 +29,11 @@ class Tables(NamedTuple):
     end_position: np.ndarray  # (8,)
     monomial: np.ndarray  # (8, 8) coefficients in s of the polynomial through a: monomial @ a
     highest: np.ndarray  # (2, 8) the coefficients of a's Legendre polynomials of degree 6 and 7: highest @ a
+    # what the doubles above lack
+    node_left: np.ndarray
+    position_left: np.ndarray
+    end_velocity_left: np.ndarray
+    end_position_left: np.ndarray
 
 
 @cache
@@ -42,12 +47,15 @@ def tables() -> Tables:
         once = [_integral(p) for p in basis]
         twice = [_integral(p) for p in once]
         top = [_legendre(NODES - 2), _legendre(NODES - 1)]
+        node = [(s + 1) / 2 for s in nodes]
+        position = [[_value(p, s) / 4 for p in twice] for s in nodes]
+        end_velocity, end_position = [_value(p, one) / 2 for p in once], [_value(p, one) / 4 for p in twice]
         return Tables(
-            node=_rounded([(s + 1) / 2 for s in nodes]),
+            node=_rounded(node),
             velocity=_rounded([[_value(p, s) / 2 for p in once] for s in nodes]),
-            position=_rounded([[_value(p, s) / 4 for p in twice] for s in nodes]),
-            end_velocity=_rounded([_value(p, one) / 2 for p in once]),
-            end_position=_rounded([_value(p, one) / 4 for p in twice]),
+            position=_rounded(position),
+            end_velocity=_rounded(end_velocity),
+            end_position=_rounded(end_position),
             monomial=_rounded([[p[k] for p in basis] for k in range(NODES)]),
             # a rule of eight nodes integrates products of two such polynomials exactly
             highest=_rounded(
@@ -56,6 +64,10 @@ def tables() -> Tables:
                     for p in top
                 ]
             ),
+            node_left=_left(node),
+            position_left=np.array([_left(row) for row in position]),
+            end_velocity_left=_left(end_velocity),
+            end_position_left=_left(end_position),
         )
 
 
@@ -114,3 +126,7 @@ def _value(p: Polynomial, s: Decimal) -> Decimal:
 
 def _rounded(values: list[Decimal] | list[list[Decimal]]) -> np.ndarray:
     return np.array(values, dtype=float)
+
+
+def _left(values: list[Decimal]) -> np.ndarray:
+    return np.array([float(value - Decimal(float(value))) for value in values])

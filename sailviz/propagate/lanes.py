@@ -8,6 +8,7 @@ that it branches on numbers only. LLVM makes of it one register of AVX-512, two 
 
 from __future__ import annotations
 
+import math
 import operator
 from collections.abc import Callable
 from typing import Any
@@ -22,7 +23,7 @@ from numba.extending import intrinsic, lower_builtin
 
 COUNT = 8
 REAL, WORD, SHORT = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
-VECTOR = ir.VectorType(REAL, COUNT)
+VECTOR, WORDS = ir.VectorType(REAL, COUNT), ir.VectorType(WORD, COUNT)
 FREE = ("contract", "nsz")  # as all compiled code: a product and a sum may become one, and zero has no sign
 NUMBERS = (types.Float, types.Integer)
 
@@ -103,6 +104,34 @@ def _of_one(operation: Callable[..., Any], make: Callable[..., Any]) -> None:
     lower_builtin(operation, lanes)(lambda context, builder, sig, arguments: make(builder, arguments[0]))
 
 
+def _exp(builder, x):
+    """e^x by x = n ln 2 + r and the Taylor polynomial of r up to its thirteenth power, which is good to 4e-18 for
+    |r| < ln 2 / 2; beyond 700 it stays as it is."""
+
+    def number(value):
+        return ir.Constant(VECTOR, [value] * COUNT)
+
+    def sum_of(a, b):
+        return builder.fadd(a, b, flags=FREE)
+
+    def product_of(a, b):
+        return builder.fmul(a, b, flags=FREE)
+
+    for sense, bound in ((">", 700.0), ("<", -700.0)):
+        x = builder.select(builder.fcmp_ordered(sense, x, number(bound)), number(bound), x)
+    shift = number(1.5 * 2.0**52)  # a number of this size has no fraction: its last bits are n
+    shifted = builder.fadd(builder.fmul(x, number(1 / math.log(2))), shift)
+    n = builder.fsub(shifted, shift)
+    r = sum_of(x, product_of(n, number(-0.693147180369123816490)))  # ln 2 in two parts, the first with 32 bits
+    r = sum_of(r, product_of(n, number(-1.90821492927058770002e-10)))
+    value = number(1 / math.factorial(13))
+    for k in range(12, -1, -1):
+        value = sum_of(product_of(value, r), number(1 / math.factorial(k)))
+    exponent = builder.shl(builder.bitcast(shifted, WORDS), ir.Constant(WORDS, [52] * COUNT))
+    return builder.bitcast(builder.add(builder.bitcast(value, WORDS), exponent), VECTOR)
+
+
+_of_one(np.exp, _exp)
 _of_one(operator.neg, lambda builder, a: builder.fneg(a))
 _of_one(np.sqrt, lambda builder, a: _llvm(builder, "llvm.sqrt.v8f64", a))
 
@@ -167,6 +196,33 @@ def constant(values: Callable[[], np.ndarray]) -> Any:
         return lanes(), generate
 
     return made
+
+
+@intrinsic
+def product_left(typing, a, b, product):
+    """a b - product, of lanes or of numbers, without rounding in between."""
+    kind = lanes if lanes in (a, b, product) else types.float64
+
+    def generate(context, builder, sig, arguments):
+        if kind == lanes:
+            a, b, c = (_as_lanes(builder, v, k) for v, k in zip(arguments, sig.args, strict=True))
+            return _llvm(builder, "llvm.fma.v8f64", a, b, builder.fneg(c))
+        return builder.fma(arguments[0], arguments[1], builder.fneg(arguments[2]))
+
+    return kind(a, b, product), generate
+
+
+def swapped(distance: int) -> Any:
+    """An inlined function: lanes -> lanes, i and i xor distance exchanged."""
+
+    @intrinsic
+    def swap(typing, a):
+        def generate(context, builder, sig, arguments):
+            return _shuffled(builder, arguments[0], arguments[0], [i ^ distance for i in range(COUNT)])
+
+        return lanes(lanes), generate
+
+    return swap
 
 
 def _folded(fold: Callable[..., Any]) -> Any:

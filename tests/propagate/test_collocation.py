@@ -3,14 +3,18 @@ those of the right-hand side. What every integrator has to do: test_integrators.
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from sailviz.compiled import entry
 from sailviz.constants import AU
-from sailviz.propagate import collocation, dop853, dynamics
-from sailviz.propagate.collocation_steps import LENGTH, fits_lanes, forces_at_once, load, node, prepare, store
+from sailviz.environment import atmosphere
+from sailviz.propagate import collocation, collocation_memory, dop853, dynamics
+from sailviz.propagate.collocation_forces import fits_lanes, forces_at_once, prepare
+from sailviz.propagate.collocation_memory import LENGTH, load, node, store
 from sailviz.propagate.dynamics import derivative
 from sailviz.propagate.events import APSIS, NODE, RADIUS, RECORD, watch
 from sailviz.propagate.gauss_legendre import NODES, tables
@@ -170,8 +174,8 @@ def test_a_hundred_years_of_mercurys_orbit_are_no_worse_than_by_dop853():
         errs(flown(dynamics.model(1.0), *start, times, 1e-13, method=method)[0], exact(times))
         for method in (collocation, dop853)
     ]
-    assert wrong[0] < wrong[1]
-    assert wrong[0] < 2e-10
+    assert wrong[0] < 0.2 * wrong[1]
+    assert wrong[0] < 3e-11
 
 
 def test_symmetric_flights_stay_symmetric():
@@ -229,18 +233,18 @@ def _both_ways(states, out, factor, parameters):
     if not fits_lanes(p):
         return 1
     nodes, y, rate = out[6], states[7], out[7]
-    store(nodes, 168, node())
+    store(nodes, collocation_memory.NODE, node())
     prepare(nodes, 3.0, 2.0, factor, p)
     place = load(states[0], 0), load(states[1], 0), load(states[2], 0)
     speed = load(states[3], 0), load(states[4], 0), load(states[5], 0)
-    ax, ay, az = forces_at_once(nodes, place[0], place[1], place[2], speed[0], speed[1], speed[2], factor, p)
+    ax, ay, az = forces_at_once(nodes, place[0], place[1], place[2], speed[0], speed[1], speed[2], 1.0, factor, p)
     store(out[0], 0, ax)
     store(out[1], 0, ay)
     store(out[2], 0, az)
     for i in range(8):
         for j in range(7):
             y[j] = states[j, i]
-        derivative(3.0 + 2.0 * nodes[168 + i], y, factor, p, rate)
+        derivative(3.0 + 2.0 * nodes[collocation_memory.NODE + i], y, factor, p, rate)
         for j in range(3):
             out[3 + j, i] = rate[3 + j]
     return 0
@@ -279,13 +283,34 @@ def test_eight_forces_at_once_are_those_of_the_right_hand_side(steering, device)
     random = np.random.default_rng(3)
     states = np.ones((8, 8))
     states[:6] = random.uniform(-2, 2, (6, 8))
-    model = dynamics.model(1.0, j2_strength=1e-3, zonal=(1e-3, 1e-3), **STEERING[steering], **DEVICES[device])
+    air = (atmosphere.EXPONENTIAL, 0.1, 1.0, 0.7, 0.8)
+    more = {"j2_strength": 1e-3, "zonal": (1e-3, 1e-3), "air": air, "rotation": 0.1}
+    model = dynamics.model(1.0, **more, **STEERING[steering], **DEVICES[device])
     for factor in (1.0, 0.4, 0.0):
         out = np.zeros((8, LENGTH))
         assert _both_ways(states, out, factor, model.parameters) == 0
         together, alone = out[:3, :8], out[3:6, :8]
         assert np.isfinite(alone).any()
         assert together == pytest.approx(alone, rel=1e-12, abs=1e-13, nan_ok=True)
+
+
+@entry("D1 d1")
+def _exponentials(out, x):
+    store(out, 0, np.exp(load(x, 0)))
+    return 0
+
+
+def test_exponentials_of_lanes_are_good_to_the_last_digit():
+    random = np.random.default_rng(5)
+    for size in (1.0, 30.0, 600.0):
+        x, out = random.uniform(-size, size, 8), np.zeros(8)
+        _exponentials(out, x)
+        assert out == pytest.approx(np.exp(x), rel=4e-16)
+    x, out = np.array([0.0, -0.0, 800, -800, 1e9, -1e9, np.log(2), 1]), np.zeros(8)
+    _exponentials(out, x)
+    assert out[:2].tolist() == [1.0, 1.0]
+    assert np.isfinite(out).all()
+    assert out[3] < 1e-300
 
 
 def test_the_tables_integrate_polynomials_exactly():
@@ -300,3 +325,9 @@ def test_the_tables_integrate_polynomials_exactly():
     legendre = np.polynomial.legendre.Legendre([0, 0, 0, 0, 0, 0, 3.0, -2.0])
     assert t.highest @ legendre(2 * t.node - 1) == pytest.approx([3.0, -2.0], rel=1e-13)
     assert np.sum(t.end_velocity) == pytest.approx(1.0, rel=1e-15)
+    # the weights add up to 1 exactly, and these to 1/2, with what their doubles lack
+    for table, left, whole in (
+        (t.end_velocity, t.end_velocity_left, 1.0),
+        (t.end_position, t.end_position_left, 0.5),
+    ):
+        assert abs(math.fsum([*table, *left, -whole])) < 1e-31

@@ -28,11 +28,13 @@ SEASON_STEP = 15  # d, at most, between the days of a table over dates
 YEAR_NODES = 24  # of a table that holds for every year
 YEAR_DAYS = 365.25
 LOWEST, HIGHEST, STEP = 100e3, 1500e3, 10e3  # m
+BEND, STEP_ABOVE = 250e3, 25e3  # m, of tables of real space weather, which has many
+SEASON_REACHED = 1e-3  # s before a season at which a step has ended there
 LATITUDES, TIMES = 19, 24
 
 # header of a row: how many seasons it has, the place of t = 0 among them, places per second, the places of a whole year
-# (0: it has none), the length of each season's table
-_SEASONS, _FIRST, _RATE, _ROUND, _LENGTH, _HEADER = range(6)
+# (0: it has none), the length of each season's table, whether steps of an integrator end at the seasons (1) or not
+_SEASONS, _FIRST, _RATE, _ROUND, _LENGTH, _STEPS_END, _HEADER = range(7)
 _YEAR_SAMPLES = 8  # days that pymsis is asked for, which fix the year's first four harmonics
 _HARMONICS = 8  # local times that pymsis is asked for; they fix the model's three tides, and these the table
 _WITHOUT = {"all_ut_effects": 0, "longitudinal": 0, "mixed_ut_long": 0, "mixed_ap_ut_long": 0}
@@ -67,7 +69,11 @@ def _msis(latitudes, f107, ap, seasons):
 @lru_cache(64)  # half a megabyte each
 def _nodes(f107, ap, seasons):
     """ln of the density at the nodes of one solar level: (latitudes, local times, altitudes)."""
-    log_density = np.log(_msis(np.linspace(-90, 90, LATITUDES), f107, ap, seasons))
+    return _tides(np.log(_msis(np.linspace(-90, 90, LATITUDES), f107, ap, seasons)))
+
+
+def _tides(log_density):
+    """Of (local times asked, latitudes, altitudes): all local times, (latitudes, local times, altitudes)."""
     tides = np.fft.rfft(log_density, axis=0)
     tides[-1] /= 2  # the highest one, which eight values cannot tell from its mirror image
     return np.moveaxis(np.fft.irfft(tides, TIMES, axis=0) * (TIMES / _HARMONICS), 0, 1)
@@ -82,10 +88,10 @@ def _levels(levels, ap):
     return levels, list(zip(levels.tolist(), np.broadcast_to(ap, levels.shape).tolist(), strict=True))
 
 
-def _row(levels, tables, first=0.0, rate=0.0, around=0):
+def _row(levels, tables, first=0.0, rate=0.0, around=0, altitudes=None, steps_end=0):
     """A row of one table per season, each (levels, latitudes, local times, altitudes)."""
-    rows = [flat(nodes[..., None], _altitudes(), levels) for nodes in tables]
-    return np.concatenate([[len(rows), first, rate, around, len(rows[0])], *rows])
+    rows = [flat(nodes[..., None], _altitudes() if altitudes is None else altitudes, levels) for nodes in tables]
+    return np.concatenate([[len(rows), first, rate, around, len(rows[0]), steps_end], *rows])
 
 
 def table(levels=LEVELS, ap=GEOMAGNETIC, seasons=SEASONS):
@@ -149,6 +155,62 @@ def table_over(start, duration, levels=LEVELS, ap=GEOMAGNETIC):
     rate = YEAR_NODES / YEAR_DAYS
     years = np.stack([_year(level, index) for level, index in pairs], axis=1)
     return _row(levels, years, _day_of_year(start) * rate, rate / DAY, YEAR_NODES)
+
+
+def moments_of_weather(start, duration, storms=False):
+    """Moments (k,) datetime64[s], from before the start to after the end, at which the air of real space weather is
+    tabulated: noons, or with storms the middles of the three hours of each value of ap."""
+    step = np.timedelta64(3 if storms else 24, "h")
+    half = step.astype("timedelta64[s]") / 2
+    start = np.datetime64(start, "s")
+    day = start.astype("datetime64[D]").astype("datetime64[s]")
+    before = (start - half - day) // step  # of the moments of this day, may be -1
+    end = start + np.timedelta64(int(np.ceil(duration)), "s")
+    after = -((day + half - end) // step)
+    return day + half + step * np.arange(before, max(after, before + 1) + 1)
+
+
+def table_of_weather(start, duration, given, storms=False, version=2.1):
+    """The atmosphere of real space weather over a run as a flat row for `lookup`, which gives the same for any f107.
+
+    start : np.datetime64, UTC, of t = 0; duration : s; given : function of dates (k,) that returns what NRLMSIS takes
+    (`space_weather.SpaceWeather.given`); storms : by ap every three hours instead of its daily mean. ln rho is linear
+    in time between the noons, or the middles of three hours. Against pymsis itself at random places from 200 to 900 km,
+    without longitude and universal time: 1 % rms and 6 % at most. Source as in `table`. It takes 0.02 s and 0.25 MB a
+    day, with storms eight times as much.
+    """
+    from pymsis import calculate
+
+    moments = moments_of_weather(start, duration, storms)
+    altitudes = np.concatenate([np.arange(LOWEST, BEND, STEP), np.arange(BEND, HIGHEST + STEP_ABOVE / 2, STEP_ABOVE)])
+    flux, mean_flux, ap = given(moments)
+    mode = {"geomagnetic_activity": -1.0} if storms else {}
+    latitudes = np.linspace(-90, 90, LATITUDES)
+    tables = []
+    for moment, *today in zip(moments, flux, mean_flux, ap, strict=True):
+        hours = (moment - moment.astype("datetime64[D]")) / np.timedelta64(1, "h")
+        longitudes = 360.0 / _HARMONICS * np.arange(_HARMONICS) - 15.0 * hours  # local time from midnight on
+        arguments = {"f107s": [today[0]], "f107as": [today[1]], "aps": [today[2]]}
+        longitudes = np.remainder(longitudes + 180.0, 360.0) - 180.0
+        density = calculate(
+            [moment], longitudes, latitudes, 1e-3 * altitudes, **arguments, version=version, **_WITHOUT, **mode
+        )[0, ..., 0]
+        tables.append(_tides(np.log(density.astype(float)))[None])
+    step = (moments[1] - moments[0]) / np.timedelta64(1, "s")
+    first = (np.datetime64(start, "ns") - moments[0]) / np.timedelta64(1, "ns") * 1e-9
+    return _row([0.0], tables, first / step, 1 / step, altitudes=altitudes, steps_end=1)
+
+
+@inlined
+def next_season(p, at, t):
+    """Time, s after t, of the next season of the row that begins at p[at], where steps of an integrator end; infinite
+    where they need not."""
+    if p[at + _STEPS_END] == 0.0:
+        return np.inf
+    rate = p[at + _RATE]
+    moment = p[at + _FIRST] + rate * t
+    wait = (np.floor(moment) + 1.0 - moment) / rate
+    return wait if wait > SEASON_REACHED else wait + 1.0 / rate
 
 
 def days_over(start, duration):

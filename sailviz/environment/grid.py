@@ -14,7 +14,10 @@ import numpy as np
 from sailviz.compiled import inlined
 
 LATITUDES, TIMES, ALTITUDES, LEVELS = 0, 1, 2, 3  # how many
-LOWEST, PER_METRE, FIRST_LEVEL = 4, 5, 6  # altitude m, its nodes per m, where the solar levels begin
+LOWEST, PER_METRE = 4, 5  # altitude m, its nodes per m
+BEND, PER_METRE_ABOVE = 6, 7  # altitude m from which on there are other nodes per m
+FIRST_LEVEL = 8  # where the solar levels begin
+NO_BEND = 1e15  # m, above everything
 MOST_LEVELS = 10
 HEADER = FIRST_LEVEL + MOST_LEVELS
 FARTHEST = 0.5  # of its width, beyond a held cell, to which its values are continued
@@ -45,7 +48,11 @@ def flat(values, altitudes, levels):
     header[LATITUDES], header[TIMES], header[ALTITUDES] = values.shape[1:4]
     header[LEVELS] = len(levels)
     header[LOWEST] = altitudes[0]
-    header[PER_METRE] = (len(altitudes) - 1) / (altitudes[-1] - altitudes[0])
+    even = int(np.sum(np.isclose(np.diff(altitudes), altitudes[1] - altitudes[0])))
+    header[PER_METRE] = even / (altitudes[even] - altitudes[0])
+    header[BEND] = NO_BEND
+    if even < len(altitudes) - 1:
+        header[BEND], header[PER_METRE_ABOVE] = altitudes[even], (len(altitudes) - 1 - even) / np.ptp(altitudes[even:])
     header[FIRST_LEVEL : FIRST_LEVEL + len(levels)] = levels
     nodes = np.concatenate([values, values[:, :, :1]], axis=2)
     return np.concatenate([header, np.moveaxis(nodes, 0, 3).astype(float).ravel()])
@@ -74,7 +81,10 @@ def in_nodes(p, at, latitude, local_time, altitude):
     """A place counted in nodes of the table; the local time within a day."""
     turns = local_time * (0.5 / np.pi)
     u = (latitude * (1.0 / np.pi) + 0.5) * (p[at + LATITUDES] - 1.0)
-    return u, (turns - np.floor(turns)) * p[at + TIMES], (altitude - p[at + LOWEST]) * p[at + PER_METRE]
+    v, bend = (turns - np.floor(turns)) * p[at + TIMES], p[at + BEND]
+    if altitude <= bend:
+        return u, v, (altitude - p[at + LOWEST]) * p[at + PER_METRE]
+    return u, v, (bend - p[at + LOWEST]) * p[at + PER_METRE] + (altitude - bend) * p[at + PER_METRE_ABOVE]
 
 
 @inlined

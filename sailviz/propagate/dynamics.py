@@ -92,6 +92,7 @@ def model(
     third_body: Sequence[float] = (),
     sun: Sequence[float] = (),
     solar_level: Sequence[float] = (),
+    solar_level_table: Sequence[float] | None = None,
     air: Sequence[float] = (),
     air_table: np.ndarray[Any, Any] | None = None,
     plasma: Sequence[float] = (),
@@ -160,7 +161,13 @@ def model(
     callbacks["forces"] = len(forces)
     pairs = [(one.address, put(one.numbers)) for one in forces]
     put(pairs, "forces")
-    named = {"air": air_table, "plasma": plasma_table, "control": control_table, "control_law": control_law}
+    named = {
+        "air": air_table,
+        "plasma": plasma_table,
+        "solar_level": solar_level_table,
+        "control": control_table,
+        "control_law": control_law,
+    }
     for place, rows in named.items():
         if rows is not None:
             put(rows, place)

@@ -19,9 +19,9 @@ from sailviz.environment import atmosphere, ionosphere, sun
 from sailviz.environment.eclipse import sunlit
 from sailviz.environment.gravity import geodetic_altitude
 from sailviz.environment.grid import beyond, cell_at
-from sailviz.environment.solar_level import flux
+from sailviz.environment.solar_level import next_day
 from sailviz.propagate.callbacks import Callback, callback
-from sailviz.propagate.low_orbit_callback import plasma_at, power_available, power_drawn
+from sailviz.propagate.low_orbit_callback import plasma_at, power_available, power_drawn, solar_flux
 from sailviz.propagate.parameters import PARAMETERS, array_at, record_at
 
 LONGEST_ARC = 0.3  # rad that a Kepler arc may span; as J2's pull turns, 70 m are missed there, a hundredth of a second
@@ -88,7 +88,7 @@ def lack_of_power(t, x, yy, z, latitude, local_time, altitude, y, p, tables):
     qx, qy, qz = y[3] + w * y[1], y[4] - w * y[0], y[5]
     speed = np.sqrt(qx * qx + qy * qy + qz * qz)
     r = np.sqrt(x * x + yy * yy + z * z)
-    density, ion_mass = plasma_at(r, latitude, local_time, altitude, flux(t, p.solar_level), p, tables)
+    density, ion_mass = plasma_at(r, latitude, local_time, altitude, solar_flux(t, p), p, tables)
     drawn = power_drawn(density, ion_mass, speed, p.brake.voltage, p)
     return drawn / power_available(float(p.held.lit), p) - 1.0
 
@@ -214,6 +214,10 @@ def _ahead(time, state, parameters, own, number, out):
     r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
     v2 = y[3] * y[3] + y[4] * y[4] + y[5] * y[5]
     span = min(number, LONGEST_ARC * np.sqrt(r2 / v2))
+    if reads_air(p):
+        span = min(span, atmosphere.next_season(tables, p.places.air, time))
+    if p.solar_level.days > 0:
+        span = min(span, next_day(time, p.solar_level))
     if reads_air(p) or reads_plasma(p) or is_limited(p):
         span = next_face(time, span, y, p, tables)
     if p.brake.power != p.brake.eclipse_power:

@@ -13,7 +13,7 @@ from sailviz.environment import atmosphere, ionosphere, magnetic, sun
 from sailviz.environment.eclipse import NO_SHADOW, sunlit
 from sailviz.environment.gravity import geodetic_altitude
 from sailviz.environment.grid import held_cell
-from sailviz.environment.solar_level import flux
+from sailviz.environment.solar_level import flux, flux_of_days
 from sailviz.propagate.callbacks import Callback, callback
 from sailviz.propagate.parameters import PARAMETERS, array_at, record_at
 from sailviz.propulsion.plasma_brake import (
@@ -24,6 +24,14 @@ from sailviz.propulsion.plasma_brake import (
     positive_force_per_length,
     tether_current,
 )
+
+
+@inlined
+def solar_flux(t, p):
+    """F10.7, sfu, by which the tables of plasma and air are read."""
+    if p.solar_level.days > 0:
+        return flux_of_days(t, p.solar_level, array_at(p.places.address, p.places.end), p.places.solar_level)
+    return flux(t, p.solar_level)
 
 
 @called
@@ -37,7 +45,7 @@ def surroundings(t, x, y, z, r, p):
     if p.plasma.kind == ionosphere.TABLE_PROFILE or p.air.kind == atmosphere.TABLED:
         latitude = np.arcsin(z / r)
         local_time = sun.local_time(t, x, y, p.sun)
-        f107 = flux(t, p.solar_level)
+        f107 = solar_flux(t, p)
     if p.held.active != 0:
         light = float(p.held.lit)
     elif p.surface.shadow != NO_SHADOW:

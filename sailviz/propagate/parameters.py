@@ -63,6 +63,7 @@ class Places(NamedTuple):
     forces: int = 0  # pairs of an address and the place of its own numbers
     air: int = 0
     plasma: int = 0
+    solar_level: int = 0  # its days
     sail: int = 0  # parameters of the sail for which a primer law steers
     control: int = 0
     control_law: int = 0

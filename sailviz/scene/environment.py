@@ -157,6 +157,25 @@ class MsisAtmosphere(Section):
     ap: Annotated[float, Field(ge=0, le=400)] = 10.0
 
 
+class SpaceWeather(Section):
+    """Measured and predicted days of the Sun's radio flux and of the geomagnetic index ap, from a file of CelesTrak,
+    CSSI or GFZ, for the air (NRLMSIS) and the ionosphere's solar level. storms: ap of every three hours instead of its
+    daily mean. continuation: what holds after the file's last day, which is an error without it; the cycle and a
+    constant flux go with a constant ap."""
+
+    file: str
+    storms: bool = False
+    continuation: Literal["cycle", "constant", "11 years earlier"] | None = None
+    continued_solar_flux: Annotated[SolarFlux, Field(ge=60, le=300)] | None = None
+    continued_ap: Annotated[float, Field(ge=0, le=400)] = 10.0
+
+    @model_validator(mode="after")
+    def _continued(self) -> Self:
+        if (self.continuation == "constant") != (self.continued_solar_flux is not None):
+            raise wrong('continuation = "constant" and continued_solar_flux_sfu go together')
+        return self
+
+
 class Light(Section):
     """How bright the Sun is at 1 au, which makes a characteristic acceleration of area and mass: the pressure of its
     light on a black surface facing it, or its irradiance, which over the speed of light is that pressure."""
@@ -197,6 +216,7 @@ class Environment(Section):
     ionosphere: Annotated[ForceProfile | DensityProfile | IonosphereTable, Field(discriminator="kind")] | None = None
     atmosphere: Annotated[ExponentialAtmosphere | MsisAtmosphere, Field(discriminator="kind")] | None = None
     solar_flux: Annotated[SolarFlux, POSITIVE] | Literal["cycle"] | None = None
+    space_weather: SpaceWeather | None = None
     sun_right_ascension: Angle | None = None
     shadow: Literal["cylinder", "cone"] = "cylinder"
     magnetic_sensitivity: Annotated[float, Field(ge=0, le=1)] = 0.0

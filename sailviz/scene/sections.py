@@ -117,12 +117,14 @@ class Limits(Section):
     """How much a run may ask for before it is refused; nothing of this changes what is flown. rows : of the recording;
     draws : of a wind or of sunlight, or updates of a controller; changes : of wind or voltage in all flights of an
     ensemble together; steps : rows of a steering table that a law makes, or legs of the first-order solution;
-    integration_steps : of the flight, tried ones; flights : of a sweep."""
+    air_tables : of real space weather, one a day or eight; integration_steps : of the flight, tried ones; flights : of
+    a sweep."""
 
     rows: Annotated[int, Field(ge=1, le=1_000_000_000)] = 10_000_000
     draws: Annotated[int, Field(ge=1, le=1_000_000_000)] = 10_000_000
     changes: Annotated[int, Field(ge=1, le=1_000_000_000_000)] = 1_000_000_000
     steps: Annotated[int, Field(ge=1, le=1_000_000_000)] = 10_000_000
+    air_tables: Annotated[int, Field(ge=1, le=1_000_000)] = 4_000
     integration_steps: Annotated[int, Field(ge=1, le=1_000_000_000_000)] = 200_000_000
     flights: Annotated[int, Field(ge=1, le=1_000_000_000)] = 10_000_000
 

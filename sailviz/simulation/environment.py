@@ -32,11 +32,13 @@ from sailviz.scene.environment import (
     LognormalWind,
     MsisAtmosphere,
     ReplayedWind,
+    SpaceWeather,
     SteadyIrradiance,
     SteadyWind,
     ThirdBody,
 )
 from sailviz.scene.values import Section
+from sailviz.simulation import space_weather
 from sailviz.simulation.lowered import Array, Columns, Place, Words, no_columns, no_words
 from sailviz.words import duration
 
@@ -65,8 +67,8 @@ class Part(Generic[P]):
     """A kind of part of the environment."""
 
     lower: Callable[[P, Place], dict[str, Any]] = _nothing  # keywords of `dynamics.model`
-    words: Callable[[P], Words] = no_words
-    columns: Callable[[P, Array, Array], Columns] = no_columns  # at times (n,) s and states (7, n)
+    words: Callable[[P, Place], Words] = no_words
+    columns: Callable[[P, Place, Array, Array], Columns] = no_columns  # at times (n,) s and states (7, n)
     body: Callable[[P], DrawnBody] | None = None
     density: Density | None = None  # of plasma, 1/m3, drawn as a shell; at places on a circle, see `plasma_density`
 
@@ -92,7 +94,10 @@ def _plasma_table(part: IonosphereTable, place: Place) -> dict[str, Any]:
         "plasma": ionosphere.Parameters(ionosphere.TABLE_PROFILE, density_factor=part.density_factor),
         "edges": low_orbit_edges(),
     }
-    flux = place.scene.environment.solar_flux
+    around = place.scene.environment
+    if around.space_weather is not None:
+        return found | {"plasma_table": ionosphere.table()}
+    flux = around.solar_flux
     return found if flux is None else found | {"plasma_table": ionosphere.table(None if flux == "cycle" else flux)}
 
 
@@ -103,7 +108,7 @@ def _density_of_profile(part: DensityProfile, named: Parameters, place: Array, a
 
 def _density_of_table(part: IonosphereTable, named: Parameters, place: Array, angle: Array, altitude: Array) -> Array:
     hour = np.arctan2(place[:, 1], place[:, 0]) - sun.mean_right_ascension.py_func(0.0, named.sun) + np.pi
-    flux = solar_level.flux.py_func(0.0, named.solar_level)
+    flux = solar_level.flux.py_func(0.0, named.solar_level)  # real space weather puts its first value there
     density, _ = ionosphere.density(np.arcsin(place[:, 2])[:, None], hour[:, None], altitude, flux)
     return density * part.density_factor
 
@@ -125,6 +130,8 @@ def _tabled_air(part: MsisAtmosphere, place: Place) -> dict[str, Any]:
         "forces": (low_orbit_forces(),),
         "edges": low_orbit_edges(),
     }
+    if place.scene.environment.space_weather is not None:
+        return found  # whose record makes the table
     flux = place.scene.environment.solar_flux
     if flux is None:
         return found
@@ -158,7 +165,7 @@ def _third_body_drawn(part: ThirdBody) -> DrawnBody:
 
 
 # ---------------------------------------------------------------- wind
-def _gamma_words(part: GammaWind) -> Words:
+def _gamma_words(part: GammaWind, place: Place) -> Words:
     mean = f"{part.shape * part.scale * 1e9:.4g} nPa"
     return [("mean pressure", mean), ("redrawn every", duration(part.redraw))]
 
@@ -176,6 +183,9 @@ ENVIRONMENT: dict[type[Section], Part[Any]] = {  # the functions of each record 
     IonosphereTable: Part[IonosphereTable](_plasma_table, density=_density_of_table),
     ExponentialAtmosphere: Part[ExponentialAtmosphere](_exponential_air),
     MsisAtmosphere: Part[MsisAtmosphere](_tabled_air),
+    SpaceWeather: Part[SpaceWeather](
+        space_weather.lowered, words=space_weather.in_words, columns=space_weather.columns
+    ),
     ThirdBody: Part[ThirdBody](
         lambda part, place: {"third_body": _orbit_of_third_body(part)},
         body=_third_body_drawn,

@@ -10,7 +10,7 @@ from sailviz.propagate import low_orbit_callback as low_orbit
 from sailviz.simulation.bodies import epoch_of
 from sailviz.simulation.device import device_of
 from sailviz.simulation.environment import parts_of, watches_shadow
-from sailviz.simulation.lowered import Array, Columns
+from sailviz.simulation.lowered import Array, Columns, Place
 from sailviz.simulation.plan import Plan
 from sailviz.simulation.steering import steering_of
 from sailviz.steering import attitude
@@ -23,8 +23,9 @@ def observe(p: Plan, time: Array, states: Array, factor: Array) -> tuple[Array, 
     columns: Columns = {}
     if p.model.steering != attitude.USER:
         columns |= steering_of(p.scene.steering).watches(p.model, time, states)
+    place = Place(p.scene, p.body, epoch_of(p.scene))
     for part, record in parts_of(p.scene):
-        columns |= record.columns(part, time, states)
+        columns |= record.columns(part, place, time, states)
     if p.body.name == "Earth":
         values = low_orbit.observe_low_orbit(time, states, factor, p.model.parameters)
         columns |= low_orbit_columns(p, time, states, values)

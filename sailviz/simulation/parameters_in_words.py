@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sailviz.simulation.bodies import body_of, epoch_of
 from sailviz.simulation.device import device_of, radiation_pressure, strength_or_none
 from sailviz.simulation.environment import parts_of
+from sailviz.simulation.lowered import Place
 from sailviz.simulation.start import departure
 from sailviz.simulation.steering import steering_of
 from sailviz.words import acceleration, duration
@@ -27,8 +29,9 @@ def parameters_in_words(scene: Scene, design: Design) -> Words:
         rows.append(("radiation pressure", f"{pressure * 1e6:.6g} µN/m² at 1 au"))
     rows += device_of(scene).words(scene.device)
     rows += steering_of(scene.steering).words(scene.steering, design)
+    place = Place(scene, body_of(scene), epoch_of(scene))
     for part, record in parts_of(scene):
-        rows += record.words(part)
+        rows += record.words(part, place)
     return rows + _expectations(scene)
 
 

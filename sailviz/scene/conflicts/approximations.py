@@ -37,6 +37,8 @@ def _beyond_quasi_circular(scene: Scene) -> list[str]:
         found.append("the quasi-circular decay knows a plasma brake that is always on, and drag")
     if around.solar_flux == "cycle":
         found.append("the quasi-circular decay needs a constant solar flux")
+    if around.space_weather is not None:
+        found.append("the quasi-circular decay knows no space weather that changes: solar_flux_sfu is its level")
     return found + fits.decay(scene, device)
 
 

@@ -12,6 +12,7 @@ from sailviz.scene.conflicts.devices import CONTROLS
 from sailviz.scene.conflicts.start_points import PLANETS, mu_of_body, radius_of_body
 from sailviz.scene.conflicts.surroundings import IRRADIANCES, WINDS
 from sailviz.scene.device import control_of
+from sailviz.scene.environment import MsisAtmosphere
 from sailviz.scene.sections import FirstOrderApproximation
 from sailviz.scene.start import CircularStart, ElementsStart, FlatEllipseStart, PlanetFollowingStart
 from sailviz.scene.steering import SmoothedSteering
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
 BYTES_PER_ROW = 850  # of a recording, as measured round the Sun; 410 round the Earth
+BYTES_PER_MOMENT = 250_800  # of a table of the air
 TRACK_POINTS = 720  # of a designed orbit's steering, per revolution
 
 
@@ -44,6 +46,17 @@ def rows(scene: Scene) -> Faults:
     place = "propagation.output_interval" if run.output_interval is not None else "propagation.outputs"
     size = f" (some {total * BYTES_PER_ROW / 1e9:,.3g} GB)"
     return too_many(scene, total, "rows", "rows", "propagation.dense" if dense > even else place, size)
+
+
+def moments_of_air(scene: Scene) -> Faults:
+    """Tables of the air of real space weather, one for each day or each three hours."""
+    weather = scene.environment.space_weather
+    if weather is None or not isinstance(scene.environment.atmosphere, MsisAtmosphere):
+        return []
+    step = 10_800.0 if weather.storms else 86_400.0
+    size = f" (some {scene.propagation.duration / step * BYTES_PER_MOMENT / 1e9:,.3g} GB)"
+    place = "environment.space_weather"
+    return too_many(scene, scene.propagation.duration / step, "air_tables", "tables of air", place, size)
 
 
 def _count(span: float, interval: float) -> float:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.records import atmosphere_of, device_of, ionosphere_of, start_of, steering_of
 from sailviz.scene.device import PlasmaBrake
+from sailviz.scene.environment import MsisAtmosphere
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
@@ -16,7 +17,7 @@ def known_of_the_earth(scene: Scene) -> Faults:
     """What is known of no other body."""
     found, around = [], scene.environment
     if scene.body != "earth":
-        for name in ("j2", "j3", "j4", "atmosphere", "solar_flux"):
+        for name in ("j2", "j3", "j4", "atmosphere", "solar_flux", "space_weather"):
             if getattr(around, name):
                 found.append((f"environment.{name}", f'{name} is known for body = "earth"'))
         if device_of(scene).tether:
@@ -63,10 +64,14 @@ def drag(scene: Scene) -> Faults:
 
 def solar_flux(scene: Scene) -> Faults:
     """Tables of plasma and air need the Sun's level, within their range; nothing else does."""
-    found, flux = [], scene.environment.solar_flux
+    found, flux, weather = [], scene.environment.solar_flux, scene.environment.space_weather
     range_of_table = ionosphere_of(scene).flux or atmosphere_of(scene).flux
-    if range_of_table and flux is None:
-        words = 'tables need the sun\'s level: solar_flux_sfu = 70 ... 193 or solar_flux = "cycle"'
+    if weather is not None and flux is not None:
+        found.append(("environment.solar_flux", "the file of space weather says how active the Sun is"))
+    if weather is not None and not range_of_table:
+        found.append(("environment.space_weather", "nothing in this scene depends on it"))
+    if range_of_table and flux is None and weather is None:
+        words = 'tables need the sun\'s level: solar_flux_sfu = 70 ... 193, solar_flux = "cycle" or space_weather'
         found.append(("environment.solar_flux", words))
     if range_of_table and isinstance(flux, float):
         low, high, words = range_of_table
@@ -82,6 +87,11 @@ def date_and_sun(scene: Scene) -> Faults:
     found, around = [], scene.environment
     if around.solar_flux == "cycle" and scene.epoch is None:
         found.append(("epoch", "where the solar cycle stands needs a date"))
+    if around.space_weather is not None and scene.epoch is None:
+        found.append(("epoch", "the file of space weather is read by date"))
+    air = around.atmosphere
+    if around.space_weather is not None and isinstance(air, MsisAtmosphere) and "ap" in air.model_fields_set:
+        found.append(("environment.atmosphere.ap", "the file of space weather says it"))
     if around.sun_right_ascension is not None and scene.epoch is not None:
         found.append(("environment.sun_right_ascension", "the epoch says where the Sun is"))
     return found

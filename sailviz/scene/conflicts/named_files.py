@@ -13,10 +13,12 @@ if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
 
-def winds(scene: Scene) -> Faults:
-    """Measured winds, the scene's own and those of its ensembles."""
+def files(scene: Scene) -> Faults:
+    """Measured winds, the scene's own and those of its ensembles, and measured space weather."""
     placed = [("environment.solar_wind", scene.environment.solar_wind)]
     placed += [(f"{place}.solar_wind", item.solar_wind) for place, item in placed_ensembles(scene) if item.solar_wind]
     named = [(f"{place}.file", wind.file) for place, wind in placed if isinstance(wind, ReplayedWind)]
+    if scene.environment.space_weather is not None:
+        named.append(("environment.space_weather.file", scene.environment.space_weather.file))
     folder = folder_of(scene)
     return [(place, what) for place, name in named if (what := outside(folder, name) or unreadable(folder, name))]

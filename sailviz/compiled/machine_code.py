@@ -25,7 +25,7 @@ FORMAT = 1  # of the files
 KEPT = 6  # objects of one function in a folder: other processors and sources share it; the oldest goes
 
 PACKAGE = Path(__file__).parents[1]
-ROOMS = ("compiled", "design", "environment", "propagate", "propulsion", "simulation", "steering", "uncertainty")
+ROOMS = ("compiled", "design", "environment", "propagate", "propulsion", "run", "simulation", "steering", "uncertainty")
 
 
 class MachineCode(NamedTuple):

@@ -55,6 +55,7 @@ from sailviz.propagate.stepping import (
     STEP,
     STEPS,
     TIME,
+    TWICE,
     Integration,
     W,
     Y,
@@ -111,7 +112,7 @@ def start(t, position, velocity, mass, events=0) -> Collocation:
     work[CLOCK, TIME] = t
     if events == 0:
         return Collocation(work, _BEGUN.copy(), _NO_SIGNS, np.empty((1, 9)), nodes)
-    event = np.empty((MOST_EVENTS + MOST_SAMPLES * events + 1, 9))
+    event = np.empty((MOST_EVENTS + TWICE * MOST_SAMPLES * events + 1, 9))
     return Collocation(work, _BEGUN.copy(), np.zeros(events), event, nodes)
 
 
@@ -187,7 +188,9 @@ def advance_compiled(
             by_powers(nodes, polynomial)
             samples = min(MOST_SAMPLES, 2 + int(SAMPLES_A_RADIAN * h * np.sqrt(mu / (r * r * r))))
             contact = surface_met(polynomial, surface, mu, samples, w) if near else 2.0
-            stop_x = events_until(s, watch, polynomial, t0 + 0.5 * h, 0.5 * h, -1.0, contact, samples, mu, new, w)
+            stop_x = events_until(
+                s, watch, polynomial, t0 + 0.5 * h, 0.5 * h, -1.0, contact, samples, factor, p, new, w
+            )
         fits = True
         if stop_x < 2.0:  # the step once more, as far as it goes
             t = t0 + 0.5 * h + 0.5 * h * stop_x

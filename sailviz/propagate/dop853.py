@@ -36,6 +36,7 @@ from sailviz.propagate.stepping import (
     STEP,
     STEPS,
     TIME,
+    TWICE,
     Integration,
     W,
     Y,
@@ -91,7 +92,7 @@ def start(t, position, velocity, mass, events=0) -> Integration:
     work[CLOCK, TIME] = work[CLOCK, DENSE_START] = t
     count = np.zeros(9, dtype=np.int64)
     count[IN_USE] = 1
-    of_one_step = EVENT_SAMPLES * events + 1  # each sample may see each event once, and then there is the surface
+    of_one_step = TWICE * EVENT_SAMPLES * events + 1  # and then there is the surface
     return Integration(work, count, np.zeros(events), np.zeros((MOST_EVENTS * (events > 0) + of_one_step, 9)))
 
 
@@ -304,7 +305,7 @@ def advance_compiled(
             interpolant(t0, h, factor, p, k, m)
         stop_x = 2.0
         if watched > 0 or touched or passed:
-            stop_x = happenings(s, watch, t0, h, touched, passed, EVENT_SAMPLES, mu, surface, new, w)
+            stop_x = happenings(s, watch, t0, h, touched, passed, EVENT_SAMPLES, factor, p, new, w)
         if stop_x < 2.0:
             t = t0 + stop_x * h
         interval, factor, jumps = settle(s, breaks, factors, p, t, limit, t_end, stop_x < 2.0, interval, factor)

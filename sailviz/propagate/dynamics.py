@@ -103,6 +103,7 @@ def model(
     device_callback: Callback | None = None,
     forces: Sequence[Callback] = (),
     edges: Callback | None = None,
+    quantity: Callback | None = None,
     control: Callback | None = None,
     control_table: np.ndarray[Any, Any] | None = None,
     control_law: np.ndarray[Any, Any] | None = None,
@@ -148,7 +149,13 @@ def model(
 
     callbacks = p["callbacks"]
     callbacks["user_steering"], callbacks["user_force"] = user_steering, user_force
-    given = {"steering": steering_callback, "device": device_callback, "control": control, "edges": edges}
+    given = {
+        "steering": steering_callback,
+        "device": device_callback,
+        "control": control,
+        "edges": edges,
+        "quantity": quantity,
+    }
     for word, one in given.items():
         if one is not None:
             callbacks[word] = one.address

@@ -73,6 +73,7 @@ from sailviz.propagate.stepping import (
     STEP,
     STEPS,
     TIME,
+    TWICE,
     Integration,
     W,
     Y,
@@ -109,7 +110,7 @@ def start(t, position, velocity, mass, events=0, refinement=1.0) -> Multistep:
     count[IN_USE] = 1
     grid = np.zeros(21)
     grid[REFINEMENT] = refinement
-    event = np.zeros((MOST_EVENTS * (events > 0) + EVENT_SAMPLES * events + 1, 9))
+    event = np.zeros((MOST_EVENTS * (events > 0) + TWICE * EVENT_SAMPLES * events + 1, 9))
     return Multistep(work, count, np.zeros(events), event, np.zeros((HISTORY, 4)), grid)
 
 
@@ -169,7 +170,7 @@ def advance_compiled(
             # a periapsis between two steps is deeper than both by less than g h^2 / 8
             deep = surface + 0.2 * mu / (surface * surface) * h * h if surface > 0.0 else 0.0
             made = coast(
-                s, history, grid, watch, t_out[row], limit - 0.01 * h, factor, perturbations, deep * deep, mu
+                s, history, grid, watch, t_out[row], limit - 0.01 * h, factor, perturbations, deep * deep, p
             )  # fmt: skip
             if made == 0:
                 count[POINTS] = 0
@@ -222,7 +223,7 @@ def advance_compiled(
                 interpolant(t0, h, factor, p, k, m)
         stop_x = 2.0
         if watched > 0 or touched or passed:
-            stop_x = happenings(s, watch, t0, h, touched, passed, samples, mu, surface, new, w)
+            stop_x = happenings(s, watch, t0, h, touched, passed, samples, factor, p, new, w)
         if stop_x < 2.0:
             t = t0 + stop_x * h
             if made > 0 and count[STATUS] == DONE:  # the run goes on from here: better than the quintic's velocity

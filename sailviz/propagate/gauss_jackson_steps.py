@@ -12,7 +12,7 @@ import numpy as np
 from sailviz.compiled import called, inlined, late
 from sailviz.propagate import gauss_jackson_coefficients as c
 from sailviz.propagate.dynamics import SIZE, derivative
-from sailviz.propagate.events import measure
+from sailviz.propagate.events import off_level
 from sailviz.propagate.gauss_jackson_coefficients import LAGS
 from sailviz.propagate.stepping import NEW, W, Y
 
@@ -154,11 +154,11 @@ def quintic(y, f, new, g, h, m):
 
 
 @inlined
-def coast(s, history, grid, watch, row_time, limit, factor, perturbations, near, mu):
+def coast(s, history, grid, watch, row_time, limit, factor, perturbations, near, p):
     """Steps up to the one that contains row_time, in which something watched may happen, after which the rule is due,
     or that would come too near to limit. Leaves in s.work: Y and k[0], state and derivative at the start of the last
     step, NEW and k[12] at its end. Returns the steps made; none where the acceleration jumps at the first."""
-    k, count = s.work, s.counter
+    k, count, mu = s.work, s.counter, p.gravity.mu
     w, f = k[W], k[12]
     newest, since = count[NEWEST], count[SINCE]
     anchor, h = grid[ANCHOR], grid[GRID_STEP]
@@ -244,7 +244,7 @@ def coast(s, history, grid, watch, row_time, limit, factor, perturbations, near,
         if watched > 0:
             w[0], w[1], w[2], w[3], w[4], w[5] = x, y, z, u, v, ww
             for e in range(watched):
-                now = measure(watch.kind[e], watch.level[e], w, mu)
+                now = off_level(watch.kind[e], watch.level[e], t, w, factor, p)
                 stop = stop or s.sign[e] == 0.0 or (now < 0.0) != (s.sign[e] < 0.0)
         if stop:
             break

@@ -203,40 +203,48 @@ def observe_low_orbit(time, states, factor, parameters):
     return out
 
 
+@called
+def observe_at(t, x, y, z, vx, vy, vz, m, factor, p, tables):
+    """The columns of `observe_low_orbit` at one state, in their order."""
+    r = np.sqrt(x * x + y * y + z * z)
+    latitude, local_time, altitude, f107, light = surroundings(t, x, y, z, r, p)
+    air, drag, plasma, ion_mass, force, voltage, current, power, tilt = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    fx, fy, fz, sx, sy, sz = 0.0, 0.0, 0.0, x / r, y / r, z / r
+    if p.air.kind != atmosphere.NONE:
+        air = air_density(t, r, latitude, local_time, altitude, f107, p, tables)
+        k = air * p.air.drag_area / m
+        ax, ay, az = atmosphere.air_drag(x, y, z, vx, vy, vz, p.surface.rotation, k)
+        drag = m * np.sqrt(ax * ax + ay * ay + az * az)
+    if p.brake.present != 0:
+        density, mass = plasma_at(r, latitude, local_time, altitude, f107, p, tables)
+        if p.plasma.kind != ionosphere.FORCE_PROFILE:
+            plasma, ion_mass = density, mass
+        if factor != 0.0:
+            fx, fy, fz, force, sx, sy, sz, voltage = brake_force(t, x, y, z, vx, vy, vz, r, density, mass, light, p)
+            w = p.surface.rotation
+            qx, qy, qz = vx + w * y, vy - w * x, vz
+            speed = np.sqrt(qx * qx + qy * qy + qz * qz)
+            force *= factor
+            tilt = np.arccos(min(1.0, (x * sx + y * sy + z * sz) / r))
+            if p.plasma.kind != ionosphere.FORCE_PROFILE and voltage > 0.0:
+                current = tether_current(
+                    density, mass, speed, voltage, p.brake.length, p.brake.wire_diameter, p.brake.polarity
+                )
+                power = voltage * current / p.brake.efficiency
+    return (
+        latitude, local_time % (2.0 * np.pi), altitude, f107, light, air, drag, plasma, ion_mass, force, voltage,
+        current, power, tilt, fx, fy, fz, sx, sy, sz,
+    )  # fmt: skip
+
+
 @entry("d1 d2 d1 r1 D2", PARAMETERS)
 def _observe(time, states, factor, parameters, out):
     """`observe_low_orbit` into zeros."""
     p = parameters[0]
     tables = array_at(p.places.address, p.places.end)
     for i in range(len(time)):
-        t, x, y, z = time[i], states[0, i], states[1, i], states[2, i]
-        vx, vy, vz, m = states[3, i], states[4, i], states[5, i], states[6, i]
-        r = np.sqrt(x * x + y * y + z * z)
-        latitude, local_time, altitude, f107, light = surroundings(t, x, y, z, r, p)
-        out[LATITUDE, i], out[LOCAL_TIME, i], out[ALTITUDE, i] = latitude, local_time % (2.0 * np.pi), altitude
-        out[SOLAR_FLUX, i], out[LIGHT, i] = f107, light
-        if p.air.kind != atmosphere.NONE:
-            density = air_density(t, r, latitude, local_time, altitude, f107, p, tables)
-            k = density * p.air.drag_area / m
-            ax, ay, az = atmosphere.air_drag(x, y, z, vx, vy, vz, p.surface.rotation, k)
-            out[AIR_DENSITY, i], out[AIR_DRAG, i] = density, m * np.sqrt(ax * ax + ay * ay + az * az)
-        sx, sy, sz = x / r, y / r, z / r
-        if p.brake.present != 0:
-            density, mass = plasma_at(r, latitude, local_time, altitude, f107, p, tables)
-            if p.plasma.kind != ionosphere.FORCE_PROFILE:
-                out[PLASMA_DENSITY, i], out[ION_MASS, i] = density, mass
-            if factor[i] != 0.0:
-                fx, fy, fz, force, sx, sy, sz, voltage = brake_force(t, x, y, z, vx, vy, vz, r, density, mass, light, p)
-                out[FORCE_X, i], out[FORCE_X + 1, i], out[FORCE_X + 2, i] = fx, fy, fz
-                w = p.surface.rotation
-                qx, qy, qz = vx + w * y, vy - w * x, vz
-                speed = np.sqrt(qx * qx + qy * qy + qz * qz)
-                out[FORCE, i], out[VOLTAGE, i] = factor[i] * force, voltage
-                out[TILT, i] = np.arccos(min(1.0, (x * sx + y * sy + z * sz) / r))
-                if p.plasma.kind != ionosphere.FORCE_PROFILE and voltage > 0.0:
-                    current = tether_current(
-                        density, mass, speed, voltage, p.brake.length, p.brake.wire_diameter, p.brake.polarity
-                    )
-                    out[CURRENT, i], out[POWER, i] = current, voltage * current / p.brake.efficiency
-        out[TETHER_X, i], out[TETHER_X + 1, i], out[TETHER_X + 2, i] = sx, sy, sz
+        y = states[:, i]
+        row = observe_at(time[i], y[0], y[1], y[2], y[3], y[4], y[5], y[6], factor[i], p, tables)
+        for j in range(COLUMNS):
+            out[j, i] = row[j]
     return 0

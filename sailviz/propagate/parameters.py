@@ -52,6 +52,7 @@ class Callbacks(NamedTuple):
     device: int = 0
     control: int = 0
     edges: int = 0  # where steps have to end, see edges_callback
+    quantity: int = 0  # what events watch beside the kinds that are built in, see quantity_callback
     forces: int = 0  # how many forces of the environment there are; Places.forces says where their addresses stand
 
 

@@ -13,13 +13,25 @@ import numpy as np
 from sailviz.compiled import called, inlined
 from sailviz.propagate.callbacks import call
 from sailviz.propagate.dynamics import SIZE
-from sailviz.propagate.events import APSIS, END_OF_USE, RADIUS, STOP, measure, sign_at
+from sailviz.propagate.events import (
+    APSIS,
+    END_OF_USE,
+    ON_A_CIRCLE,
+    QUANTITY,
+    RADIUS,
+    STOP,
+    measure,
+    off_level,
+    passes,
+    sign_at,
+)
 from sailviz.propagate.patience import GOES_ON, Patience
 from sailviz.propagate.patience import NO_PROGRESS as NO_PROGRESS
 from sailviz.propagate.patience import TIME_IS_UP as TIME_IS_UP
 from sailviz.propagate.patience import TOO_MANY as TOO_MANY
 
 EVENT_SAMPLES = 4  # at most per step, so that two crossings inside one step are seen
+TWICE = 2  # crossings between two samples, at most, of a quantity that comes to its level and turns back
 MOST_EVENTS = 4096  # recorded between two calls, and then those of one more step
 
 # status of `advance`
@@ -174,8 +186,59 @@ def note(s, index, time, w):
     s.counter[EVENTS] = n + 1
 
 
+@inlined
+def at(dense, x, kind, level, t0, h, factor, p, w):
+    """`off_level` at the place x of a step, with w = the state there."""
+    evaluate(dense, x, w)
+    return off_level(kind, level, t0 + x * h, w, factor, p)
+
+
+@inlined
+def crossing(dense, kind, level, t0, h, low, high, g_low, factor, p, w):
+    """x in [low, high] where what is watched passes its level: bisection to the last bit, w = the state there."""
+    for _ in range(64):
+        middle = 0.5 * (low + high)
+        if middle <= low or middle >= high:
+            break
+        if (at(dense, middle, kind, level, t0, h, factor, p, w) < 0.0) == (g_low < 0.0):
+            low = middle
+        else:
+            high = middle
+    evaluate(dense, high, w)
+    return high
+
+
 @called
-def find_events(s, watch, dense, t0, h, x_start, x_end, samples, mu, w):
+def dip(dense, kind, level, t0, h, low, high, g_low, g, factor, p, w):
+    """x between two samples on the same side of the level at which a quantity is beyond it, else `high`. Looked for
+    where its slopes at both ends say that it may be: those of a curve that bends one way."""
+    side, span = (1.0 if g_low > 0.0 else -1.0), high - low
+    little = 1e-3 * span
+    falls = side * (g_low - at(dense, low + little, kind, level, t0, h, factor, p, w)) / little
+    rises = side * (g - at(dense, high - little, kind, level, t0, h, factor, p, w)) / little
+    if not (falls > 0.0 and rises > 0.0):
+        return high
+    meet = (side * (g_low - g) + rises * span) / (falls + rises)  # of the two tangents, from low on
+    if side * g_low - falls * meet > 0.0:
+        return high
+    a, b = low, high
+    for _ in range(80):  # thirds: the least of a curve with one bottom
+        third = (b - a) / 3.0
+        left = side * at(dense, a + third, kind, level, t0, h, factor, p, w)
+        if left < 0.0:
+            return a + third
+        right = side * at(dense, b - third, kind, level, t0, h, factor, p, w)
+        if right < 0.0:
+            return b - third
+        if left < right:
+            b = b - third
+        else:
+            a = a + third
+    return high
+
+
+@called
+def find_events(s, watch, dense, t0, h, x_start, x_end, samples, factor, p, w):
     """Record every event of a step, times t0 + h x, from x_start up to x_end in order of time, looking at that many
     samples of it. Returns x of the first that stops the run or ends the use of the device, else 2, and its index."""
     before = s.counter[EVENTS]
@@ -188,23 +251,31 @@ def find_events(s, watch, dense, t0, h, x_start, x_end, samples, mu, w):
             kind, level = watch.kind[e], watch.level[e]
             evaluate(dense, high, w)
             g_low = s.sign[e]
-            g = sign_at(kind, level, w, mu) if g_low == 0.0 else measure(kind, level, w, mu)
+            if g_low == 0.0:
+                g = sign_at(kind, level, t0 + high * h, w, factor, p)
+            else:
+                g = off_level(kind, level, t0 + high * h, w, factor, p)
             s.sign[e] = g
             if watch.action[e] == END_OF_USE and s.counter[IN_USE] == 0:
                 continue
-            if not (
-                (g_low < 0.0 and g >= 0.0 and watch.sense[e] >= 0) or (g_low > 0.0 and g <= 0.0 and watch.sense[e] <= 0)
-            ):
-                continue
-            x = root(dense, kind, level, mu, low, high, g_low, w)
-            at = s.counter[EVENTS]
-            note(s, e, t0 + x * h, w)
-            while at > first and s.event[at - 1, 1] > s.event[at, 1]:  # keep them in order of time
-                for j in range(9):
-                    s.event[at - 1, j], s.event[at, j] = s.event[at, j], s.event[at - 1, j]
-                at -= 1
-            if watch.action[e] != 0 and x < stop_x:
-                stop_x, stop_index = x, e
+            turn = high
+            if kind >= QUANTITY and g_low * g > 0.0 and not (kind >= ON_A_CIRCLE and abs(g_low - g) > 0.5 * np.pi):
+                turn = dip(dense, kind, level, t0, h, low, high, g_low, g, factor, p, w)
+            a, b, g_a, g_b = low, turn, g_low, (g if turn == high else -g_low)
+            for _ in range(TWICE):
+                if passes(kind, g_a, g_b) and (watch.sense[e] == 0 or (watch.sense[e] > 0) == (g_a < 0.0)):
+                    x = crossing(dense, kind, level, t0, h, a, b, g_a, factor, p, w)
+                    at_row = s.counter[EVENTS]
+                    note(s, e, t0 + x * h, w)
+                    while at_row > first and s.event[at_row - 1, 1] > s.event[at_row, 1]:  # keep them in order of time
+                        for j in range(9):
+                            s.event[at_row - 1, j], s.event[at_row, j] = s.event[at_row, j], s.event[at_row - 1, j]
+                        at_row -= 1
+                    if watch.action[e] != 0 and x < stop_x:
+                        stop_x, stop_index = x, e
+                if turn == high:
+                    break
+                a, b, g_a, g_b = turn, high, -g_low, g
         if stop_index >= 0:
             n = s.counter[EVENTS]
             while (
@@ -214,7 +285,7 @@ def find_events(s, watch, dense, t0, h, x_start, x_end, samples, mu, w):
             s.counter[EVENTS] = n
             evaluate(dense, stop_x, w)
             for e in range(len(watch.kind)):
-                s.sign[e] = measure(watch.kind[e], watch.level[e], w, mu)
+                s.sign[e] = off_level(watch.kind[e], watch.level[e], t0 + stop_x * h, w, factor, p)
             s.sign[stop_index] = 0.0
             return stop_x, stop_index
         low = high
@@ -230,10 +301,10 @@ def surface_met(y, new, mu, surface):
 
 
 @inlined
-def happenings(s, watch, t0, h, touched, passed, samples, mu, surface, new, w):
+def happenings(s, watch, t0, h, touched, passed, samples, factor, p, new, w):
     """Note what happens in the step [t0, t0 + h], whose polynomial is there. Returns x where it is cut short, with new
     = the state there, else 2."""
-    m = s.work[DENSE:CLOCK]
+    m, mu, surface = s.work[DENSE:CLOCK], p.gravity.mu, p.surface.radius
     contact = 2.0
     lowest = 1.0
     if passed:
@@ -241,16 +312,16 @@ def happenings(s, watch, t0, h, touched, passed, samples, mu, surface, new, w):
         touched = measure(RADIUS, surface, w, mu) < 0.0
     if touched:
         contact = root(m, RADIUS, surface, mu, 0.0, lowest, 1.0, w)
-    return events_until(s, watch, m, t0, h, 0.0, contact, samples, mu, new, w)
+    return events_until(s, watch, m, t0, h, 0.0, contact, samples, factor, p, new, w)
 
 
 @inlined
-def events_until(s, watch, m, t0, h, x_start, contact, samples, mu, new, w):
+def events_until(s, watch, m, t0, h, x_start, contact, samples, factor, p, new, w):
     """Note the events of the step up to its end, x = 1, or to the contact with the surface. Returns x where it is cut
     short, with new = the state there, else 2."""
     stop_x, stop_index = 2.0, -1
     if len(watch.kind) > 0:
-        stop_x, stop_index = find_events(s, watch, m, t0, h, x_start, min(contact, 1.0), samples, mu, w)
+        stop_x, stop_index = find_events(s, watch, m, t0, h, x_start, min(contact, 1.0), samples, factor, p, w)
     if contact < min(stop_x, 2.0):
         evaluate(m, contact, w)
         note(s, -1, t0 + contact * h, w)
@@ -273,9 +344,9 @@ def begin(s, watch, breaks, factors, p):
     count[STARTED] = 1
     while count[INTERVAL] + 1 < len(breaks) and breaks[count[INTERVAL] + 1] <= t:
         count[INTERVAL] += 1
-    factor_from(t, y, factors, count[INTERVAL], p)
+    factor = factor_from(t, y, factors, count[INTERVAL], p) * count[IN_USE]
     for e in range(len(watch.kind)):
-        s.sign[e] = sign_at(watch.kind[e], watch.level[e], y, p.gravity.mu)
+        s.sign[e] = sign_at(watch.kind[e], watch.level[e], t, y, factor, p)
 
 
 @inlined

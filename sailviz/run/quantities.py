@@ -6,7 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from sailviz.compiled import Late
 from sailviz.elements import Elements, apoapsis, periapsis
+from sailviz.run import formulas
 from sailviz.run.arrays import Run
 
 FULL_CIRCLE = 1e-6  # length of the mean of unit vectors below which angles go all round and have no mean
@@ -36,30 +38,22 @@ def circular_mean(cosine: float, sine: float, turn: float) -> float:
     return float(np.arctan2(sine, cosine) / (2 * np.pi) % 1 * turn)
 
 
-def _distance(run: Run) -> np.ndarray:
-    found: np.ndarray = np.linalg.norm(run.position, axis=1)
-    return found
+def _of_state(formula: Late) -> Value:
+    """A formula of the state, for every row."""
+    takes = formula.py_func.__code__.co_varnames[: formula.py_func.__code__.co_argcount]
 
+    def value(run: Run) -> np.ndarray:
+        columns = dict(zip(("x", "y", "z", "vx", "vy", "vz"), (*run.position.T, *run.velocity.T), strict=True))
+        columns["mu"] = run.setting.body.mu
+        found: np.ndarray = formula.py_func(*(columns[name] for name in takes))
+        return found
 
-def _energy(run: Run) -> np.ndarray:
-    found: np.ndarray = np.sum(run.velocity**2, axis=1) / 2 - run.setting.body.mu / _distance(run)
-    return found
-
-
-def _momentum(run: Run) -> np.ndarray:
-    found: np.ndarray = np.linalg.norm(np.cross(run.position, run.velocity), axis=1)
-    return found
-
-
-def _flight_path(run: Run) -> np.ndarray:
-    radial = np.sum(run.position * run.velocity, axis=1) / _distance(run)
-    found: np.ndarray = np.arctan2(radial, _momentum(run) / _distance(run))
-    return found
+    return value
 
 
 def _longitude(run: Run) -> np.ndarray:
     """Unwrapped, so that it counts revolutions; from the first row of the run or block."""
-    return np.unwrap(np.arctan2(run.position[:, 1], run.position[:, 0]))
+    return np.unwrap(formulas.longitude.py_func(run.position[:, 0], run.position[:, 1]))
 
 
 def _closed_form_error(run: Run) -> np.ndarray:
@@ -84,25 +78,22 @@ def _mean_altitude(run: Run) -> np.ndarray:
     return run.environment.get("mean_altitude_m", osculating)
 
 
-def _radial_speed(run: Run) -> np.ndarray:
-    found: np.ndarray = np.sum(run.position * run.velocity, axis=1) / _distance(run)
-    return found
-
+_distance = _of_state(formulas.radius)
 
 VALUES: dict[str, Value] = {
     "time": lambda run: run.time,
     "radius": _distance,
     "altitude": lambda run: _distance(run) - run.setting.body.radius,
-    "elevation": lambda run: np.arctan2(run.position[:, 2], np.hypot(run.position[:, 0], run.position[:, 1])),
+    "elevation": _of_state(formulas.elevation),
     "height": lambda run: run.position[:, 2],
     "longitude": _longitude,
     "speed": lambda run: np.linalg.norm(run.velocity, axis=1),
-    "radial_speed": _radial_speed,
-    "transverse_speed": lambda run: _momentum(run) / _distance(run),
-    "flight_path_angle": _flight_path,
-    "energy": _energy,
-    "angular_momentum": _momentum,
-    "angular_momentum_z": lambda run: np.cross(run.position, run.velocity)[:, 2],
+    "radial_speed": _of_state(formulas.radial_speed),
+    "transverse_speed": _of_state(formulas.transverse_speed),
+    "flight_path_angle": _of_state(formulas.flight_path_angle),
+    "energy": _of_state(formulas.energy),
+    "angular_momentum": _of_state(formulas.angular_momentum),
+    "angular_momentum_z": _of_state(formulas.angular_momentum_z),
     "mass": lambda run: run.mass,
     "semi_major_axis": lambda run: run.elements.semi_major_axis,
     "eccentricity": lambda run: run.elements.eccentricity,

@@ -25,9 +25,10 @@ from sailviz.scene.body import CustomBody, Target
 from sailviz.scene.conflicts import conflicts
 from sailviz.scene.device import Devices
 from sailviz.scene.environment import Environment, Light
+from sailviz.scene.events import Watched
 from sailviz.scene.faults import faults_of, locate
 from sailviz.scene.overrides import overridden, place_of
-from sailviz.scene.sections import Approximation, Chaos, Ensemble, Expectation, Limits, Propagation, Recording, Watched
+from sailviz.scene.sections import Approximation, Chaos, Ensemble, Expectation, Limits, Propagation, Recording
 from sailviz.scene.start import Start
 from sailviz.scene.steering import Steering
 from sailviz.scene.units_in_keys import convert

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from sailviz.scene.device import DistanceControl, ElectrochromicControl, PressureControl
 from sailviz.scene.environment import Winds
-from sailviz.scene.values import POSITIVE, Angle, Length, Section, Time, one_of, wrong
+from sailviz.scene.values import POSITIVE, Angle, Section, Time, one_of, wrong
 from sailviz.words import nearest, shown
 
 
@@ -44,26 +44,6 @@ class Propagation(Section):
             raise wrong("give outputs or output_interval, not both")
         if self.output_interval is not None and self.output_interval > self.duration:
             raise wrong("output_interval is longer than duration")
-        return self
-
-
-class Watched(Section):
-    """An event to find. `stop` ends the run there."""
-
-    kind: Literal["radius", "altitude", "mean-altitude", "periapsis", "apoapsis", "node", "escape"]
-    name: str | None = None
-    radius: Annotated[Length, POSITIVE] | None = None
-    altitude: Annotated[Length, POSITIVE] | None = None
-    sense: Literal["up", "down", "both"] = "both"
-    stop: bool = False
-
-    @model_validator(mode="after")
-    def _level(self) -> Self:
-        for field in ("radius", "altitude"):
-            of_it = (field, "mean-altitude") if field == "altitude" else (field,)
-            if (self.kind in of_it) != (getattr(self, field) is not None):
-                needs = f'kind = "{self.kind}" needs {field}'
-                raise wrong(needs if self.kind in of_it else f'{field} belongs to kind = "{field}" and to no other')
         return self
 
 

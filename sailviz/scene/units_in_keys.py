@@ -132,8 +132,15 @@ def _section(model: type[BaseModel], raw: object, field_path: str, path: str, fo
             found.places[f"{field_path}.{key}" if field_path else key] = Written(here)
             out.setdefault(key, _without_unit(model, key, value, here, found))
         else:
-            found.faults.append(Fault(here, "unknown key.", _hint(key, allowed)))
+            why = _why_not(model, str(key))
+            found.faults.append(Fault(here, why) if why else Fault(here, "unknown key.", _hint(key, allowed)))
     return out
+
+
+def _why_not(model: type[BaseModel], key: str) -> str:
+    """Why a section does not take a quantity that is known elsewhere; "" where it does not say."""
+    against: dict[str, str] = getattr(model, "why_not", {})
+    return next((f"{words}." for stem, words in against.items() if key == stem or key.startswith(f"{stem}_")), "")
 
 
 def _without_unit(model: type[BaseModel], key: str, value: object, here: str, found: Conversion) -> object:

@@ -40,6 +40,10 @@ Power = Annotated[float, Dimension("power")]
 MassDensity = Annotated[float, Dimension("mass_density")]
 SolarFlux = Annotated[float, Dimension("solar_flux")]
 IonMass = Annotated[float, Dimension("ion_mass")]
+Speed = Annotated[float, Dimension("speed")]
+Current = Annotated[float, Dimension("current")]
+SpecificEnergy = Annotated[float, Dimension("specific_energy")]
+SpecificAngularMomentum = Annotated[float, Dimension("specific_angular_momentum")]
 Mu = Annotated[float, Dimension("mu")]
 Moment = Annotated[
     datetime | date,

@@ -21,6 +21,7 @@ from sailviz.environment.sun import sun_parameters
 from sailviz.propagate.edges_callback import low_orbit_edges
 from sailviz.propagate.low_orbit_callback import low_orbit_forces
 from sailviz.propagate.parameters import Parameters
+from sailviz.scene.conflicts.moments import lit_and_dark
 from sailviz.scene.environment import (
     BurrWind,
     CyclicIrradiance,
@@ -230,7 +231,4 @@ def surroundings(scene: Scene, body: Body, epoch: np.datetime64 | None) -> dict[
 
 def watches_shadow(scene: Scene) -> bool:
     """Whether sunlight and shadow matter to a scene, or are at least known in it."""
-    if scene.body != "earth":
-        return False
-    known = scene.epoch is not None or scene.environment.sun_right_ascension is not None
-    return known or getattr(scene.device, "eclipse", "on") != "on"
+    return lit_and_dark(scene)

@@ -1,4 +1,4 @@
-"""A scene's events as the propagator watches them, one record per kind."""
+"""A scene's events as the propagator watches them: one record per kind, and quantities by their numbers."""
 
 from __future__ import annotations
 
@@ -7,12 +7,18 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from sailviz.propagate import events
+from sailviz.propagate.callbacks import Callback
+from sailviz.propagate.quantity_callback import INVERSE, QUANTITIES, quantity_callback
+from sailviz.propulsion.devices import PLASMA_BRAKE
+from sailviz.scene.quantities import ON_A_CIRCLE
 from sailviz.simulation.device import device_of
 
 if TYPE_CHECKING:
     from sailviz.run.arrays import Body
+    from sailviz.scene.events import Crossing, Watched
     from sailviz.scene.loading import Scene
-    from sailviz.scene.sections import Watched
+
+ANGLES_ON_A_CIRCLE = (*ON_A_CIRCLE, "longitude")  # a direction, where it is watched: it does not count revolutions
 
 _SENSE = {"up": 1, "down": -1, "both": 0}
 
@@ -53,16 +59,35 @@ EVENTS = {
 }
 
 
+def crossing_row(item: Crossing, body: Body, action: int) -> tuple[int, float, int, int]:
+    """The row of `events.watch` for a quantity that crosses a value."""
+    stem, level = item.quantity or "", item.level
+    kind = (events.ON_A_CIRCLE if stem in ANGLES_ON_A_CIRCLE else events.QUANTITY) + QUANTITIES.index(stem)
+    if stem in INVERSE:
+        level = -1.0 / (level + (body.radius if stem == "apogee_altitude" else 0.0))
+    return kind, level, _SENSE[item.sense], action
+
+
 def watched(scene: Scene, body: Body) -> tuple[tuple[str, ...], events.Watch]:
     """Names and Watch of the scene's events and of those that come with a device."""
     names, rows = [], []
     for event in scene.event:
+        action = events.STOP if event.stop else events.RECORD
+        names.append(event.called)
+        if event.kind is None:
+            rows.append(crossing_row(event, body, action))
+            continue
         kind = EVENTS[event.kind]
         sense = _SENSE[event.sense] if kind.sense is None else kind.sense
-        action = events.STOP if event.stop else events.RECORD
-        names.append(event.name or event.kind)
         rows.append((kind.function(scene), kind.level(event, body), sense, action))
     for name, row in device_of(scene).events(scene.device, body):
         names.append(name)
         rows.append(row)
     return tuple(names), events.watch(rows)
+
+
+def quantities_watched(scene: Scene, device: int) -> Callback | None:
+    """What tells the quantities that the scene's events watch; None where they watch none. device : of
+    propulsion.devices."""
+    stems = {event.quantity for event in scene.event if event.kind is None and event.quantity}
+    return quantity_callback(stems, device == PLASMA_BRAKE) if stems else None

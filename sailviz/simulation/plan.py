@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 from sailviz.simulation.approximations import first_orders, quasi_circular_decay
 from sailviz.simulation.bodies import body_of, epoch_of
 from sailviz.simulation.device import device_of, strength_or_none
-from sailviz.simulation.events import watched
+from sailviz.simulation.events import quantities_watched, watched
 from sailviz.simulation.identity import identity_of
 from sailviz.simulation.start import design_of, held_radius, initial_state
 from sailviz.simulation.steering import steering_of
@@ -96,6 +96,7 @@ def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
         primer_kind=steered.primer_kind,
         interpolation=steered.interpolation,
         table=steered.table,
+        quantity=quantities_watched(scene, device.kind),
         **addresses,
         **merged({"forces": device.forces}, surroundings(scene, body, place.epoch), *around),
     )

@@ -7,7 +7,7 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from sailviz.scene import device, environment, sections, start, steering
+from sailviz.scene import device, environment, events, start, steering
 from sailviz.scene.conflicts.steerings import STEERINGS as FITS
 from sailviz.scene.loading import load_scene
 from sailviz.scene.units_in_keys import words_of_kind
@@ -46,7 +46,8 @@ def test_each_kind_of_part_of_the_environment_has_a_record():
 
 
 def test_each_kind_of_event_has_a_record():
-    assert set(words_of_kind(sections.Watched)) == set(EVENTS)
+    words, _ = get_args(events.Watched.model_fields["kind"].annotation)
+    assert set(get_args(words)) == set(EVENTS)
 
 
 def test_every_steering_that_flights_can_follow_side_by_side_has_a_record_there():

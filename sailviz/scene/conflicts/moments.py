@@ -11,15 +11,21 @@ from sailviz.constants import YEAR
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.craft import has_surface
 from sailviz.scene.conflicts.ensembles import placed_ensembles
+from sailviz.scene.conflicts.records import device_of, ionosphere_of
+from sailviz.scene.device import NoDevice
 from sailviz.scene.quantities import MEANS, PLACES, spellings
 from sailviz.scene.sections import STATISTICS_OF_ROWS
 from sailviz.words import nearest, shown
 
 if TYPE_CHECKING:
+    from sailviz.scene.events import Crossing
     from sailviz.scene.loading import Scene
 
 COME_WITH_DEVICES = {"impact", "thrust on", "thrust off", "brake off"}  # events that nobody asks for
-OVER_THE_SURFACE = ("altitude", "mean-altitude")  # kinds of events
+OVER_THE_SURFACE = ("altitude", "perigee_altitude", "apogee_altitude", "mean_altitude")
+OF_A_DEVICE = ("pitch", "cone", "clock", "thrust_acceleration", "thrust_factor")
+OF_A_BRAKE = ("plasma_force", "plasma_density", "tether_current", "tether_voltage", "tether_power", "tether_tilt")
+OF_A_DENSITY = ("plasma_density", "tether_current", "tether_voltage", "tether_power")
 
 
 def ephemeris(scene: Scene) -> Faults:
@@ -64,11 +70,40 @@ def duration(scene: Scene) -> Faults:
 
 
 def events(scene: Scene) -> Faults:
-    """An altitude is counted from something."""
-    if has_surface(scene):
+    """What an event watches is there in the scene."""
+    found: Faults = []
+    for i, item in enumerate(scene.event):
+        found += unknown_here(scene, item, f"event[{i}]")
+    return found
+
+
+def unknown_here(scene: Scene, item: Crossing, place: str) -> Faults:
+    """What keeps a scene from a quantity that is watched in it."""
+    stem = item.quantity
+    if stem is None:
         return []
-    words = "the body has no radius to measure an altitude from"
-    return [(f"event[{i}].altitude", words) for i, item in enumerate(scene.event) if item.kind in OVER_THE_SURFACE]
+    where, device = f"{place}.{stem}", device_of(scene)
+    if stem in OVER_THE_SURFACE and not has_surface(scene):
+        return [(where, "the body has no radius to measure an altitude from")]
+    if stem == "mass" and scene.device.mass is None:
+        return [(where, "the device gives no mass")]
+    if stem in OF_A_DEVICE and isinstance(scene.device, NoDevice):
+        return [(where, "nothing is steered and nothing pushes: the device is none")]
+    if stem in OF_A_BRAKE and not device.tether:
+        return [(where, "only a plasma brake has it")]
+    if stem in OF_A_DENSITY and not ionosphere_of(scene).density:
+        return [(where, "needs an ionosphere with a density, not a given force")]
+    if stem == "air_drag" and scene.environment.atmosphere is None:
+        return [(where, "there is no environment.atmosphere")]
+    if stem == "sunlit_fraction" and not lit_and_dark(scene):
+        return [(where, "a shadow is known round the Earth, with an epoch or environment.sun_right_ascension")]
+    return []
+
+
+def lit_and_dark(scene: Scene) -> bool:
+    """Whether a shadow is known in a scene."""
+    known = scene.epoch is not None or scene.environment.sun_right_ascension is not None
+    return scene.body == "earth" and (known or getattr(scene.device, "eclipse", "on") != "on")
 
 
 def expected_of_ensembles(scene: Scene) -> Faults:
@@ -91,7 +126,7 @@ def expected_of_ensembles(scene: Scene) -> Faults:
 
 def expected_moments(scene: Scene) -> Faults:
     """Expectations are of moments that the run can meet, and of a mass that is known."""
-    found, happens = [], {item.name or item.kind for item in scene.event} | COME_WITH_DEVICES
+    found, happens = [], {item.called for item in scene.event} | COME_WITH_DEVICES
     words = [*STATISTICS_OF_ROWS, *sorted(happens)]
     for i, expected in enumerate(scene.expect):
         if expected.quantity.startswith("mass_") and scene.device.mass is None:

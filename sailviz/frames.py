@@ -146,7 +146,7 @@ def precession(centuries: ArrayLike) -> np.ndarray:
     zeta = 2.650545 + t * (2306.083227 + t * (0.2988499 + t * (0.01801828 - t * (5.971e-6 + t * 3.173e-7))))
     z = -2.650545 + t * (2306.077181 + t * (1.0927348 + t * (0.01826837 - t * (2.8596e-5 + t * 2.904e-7))))
     theta = t * (2004.191903 - t * (0.4294934 + t * (0.04182264 + t * (7.089e-6 + t * 1.274e-7))))
-    found: np.ndarray = _turn_z(-z * _ARCSECOND) @ _turn_y(theta * _ARCSECOND) @ _turn_z(-zeta * _ARCSECOND)
+    found: np.ndarray = turn_z(-z * _ARCSECOND) @ turn_y(theta * _ARCSECOND) @ turn_z(-zeta * _ARCSECOND)
     return found
 
 
@@ -155,21 +155,21 @@ def _turns(rows: list[list[np.ndarray]]) -> np.ndarray:
     return np.moveaxis(np.array(rows), (0, 1), (-2, -1))
 
 
-def _turn_x(angle: ArrayLike) -> np.ndarray:
+def turn_x(angle: ArrayLike) -> np.ndarray:
     """Components (..., 3, 3) of a vector in axes turned by angles (...,) rad about x."""
     c, s = np.cos(angle), np.sin(angle)
     zero, one = np.zeros_like(c), np.ones_like(c)
     return _turns([[one, zero, zero], [zero, c, s], [zero, -s, c]])
 
 
-def _turn_y(angle: ArrayLike) -> np.ndarray:
+def turn_y(angle: ArrayLike) -> np.ndarray:
     """The same about y."""
     c, s = np.cos(angle), np.sin(angle)
     zero, one = np.zeros_like(c), np.ones_like(c)
     return _turns([[c, zero, -s], [zero, one, zero], [s, zero, c]])
 
 
-def _turn_z(angle: ArrayLike) -> np.ndarray:
+def turn_z(angle: ArrayLike) -> np.ndarray:
     """The same about z."""
     c, s = np.cos(angle), np.sin(angle)
     zero, one = np.zeros_like(c), np.ones_like(c)
@@ -204,6 +204,6 @@ def obliquity_of_date(centuries: ArrayLike) -> np.ndarray:
 
 def ecliptic_of_date_to_icrf(centuries: ArrayLike) -> np.ndarray:
     """R (..., 3, 3) that takes vectors of the ecliptic and mean equinox of date to the ICRF, centuries as above."""
-    to_date = _turn_x(obliquity_of_date(centuries)) @ precession(centuries)
+    to_date = turn_x(obliquity_of_date(centuries)) @ precession(centuries)
     found: np.ndarray = np.swapaxes(to_date, -1, -2)
     return found

@@ -23,6 +23,7 @@ from sailviz.calendar import naive_utc
 from sailviz.errors import Fault, SceneError
 from sailviz.scene.body import CustomBody, Target
 from sailviz.scene.conflicts import conflicts
+from sailviz.scene.conflicts.known_starts import dated
 from sailviz.scene.device import Devices
 from sailviz.scene.environment import Environment, Light
 from sailviz.scene.events import Watched
@@ -35,6 +36,8 @@ from sailviz.scene.units_in_keys import convert
 from sailviz.scene.values import Moment, Section
 from sailviz.shipped import shipped_scenes
 from sailviz.words import nearest
+
+UNSAID = (("environment", "space_weather"), ("start", "frame"))  # left out of what a scene is where they are not said
 
 
 class Scene(Section):
@@ -83,9 +86,13 @@ class Scene(Section):
         return self._raw
 
     def resolved(self) -> dict[str, Any]:
-        """Every value, defaults included, SI, ready for JSON. A light that is not said is left out: what scenes were
-        before it could be said, they still are."""
-        return self.model_dump(mode="json", exclude={"light"} if self.light is None else None)
+        """Every value, defaults included, SI, ready for JSON. A light that is not said is left out, and so are keys
+        that came later: what scenes were before they could be said, they still are."""
+        values = self.model_dump(mode="json", exclude={"light"} if self.light is None else None)
+        for table, key in UNSAID:
+            if values[table].get(key, "") is None:
+                del values[table][key]
+        return values
 
     def identity(self) -> str:
         """Hash of the resolved scene, 16 hexadecimal digits: equal scenes have equal recordings."""
@@ -170,6 +177,9 @@ def _validated(raw: dict[str, Any], text: str, source: str, given: list[str]) ->
     except ValidationError as error:
         raise SceneError(locate(faults + faults_of(error, converted, Scene), text, given), source) from None
     scene._text, scene._source, scene._raw = text, source, raw
+    if not faults:
+        scene, told = dated(scene)
+        faults = [Fault(converted.path(place) or place, what) for place, what in told]
     if not faults:
         faults = [Fault(converted.path(place) or place, what) for place, what in conflicts(scene)]
     if faults:

@@ -5,6 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from sailviz.scene.known_starts import KnownStarts
 from sailviz.scene.values import (
     POSITIVE,
     QUARTER_TURN,
@@ -22,11 +23,12 @@ ROUNDING = 1e-12  # of the cosine of an angle that was written in degrees
 
 
 class CartesianStart(Section):
-    """Position and velocity in the inertial frame."""
+    """Position and velocity in the frame of the scene, or in another one at the epoch."""
 
     kind: Literal["cartesian"]
     position: PositionVector
     velocity: VelocityVector
+    frame: Literal["ecliptic-j2000", "icrf", "equator-of-date", "teme"] | None = None
 
 
 class ElementsStart(Section):
@@ -157,6 +159,7 @@ Start = Annotated[
     | LagrangeStart
     | PlanetFollowingStart
     | FlatEllipseStart
-    | SpiralStart,
+    | SpiralStart
+    | KnownStarts,
     Field(discriminator="kind"),
 ]

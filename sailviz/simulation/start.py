@@ -13,6 +13,7 @@ from sailviz.constants import AU, DAY, J2_EARTH, RADIUS_EARTH
 from sailviz.design import displaced
 from sailviz.environment.sun import sun_parameters
 from sailviz.errors import Fault, SceneError
+from sailviz.scene.known_starts import OemStart, PlanetStart, SmallBodyStart, TleStart
 from sailviz.scene.start import (
     CartesianStart,
     CircularStart,
@@ -26,7 +27,7 @@ from sailviz.scene.start import (
     SpiralStart,
 )
 from sailviz.scene.values import Section
-from sailviz.simulation import designed_orbits
+from sailviz.simulation import designed_orbits, known_starts
 from sailviz.simulation.bodies import epoch_of
 from sailviz.words import angle, length
 
@@ -98,10 +99,6 @@ def _lagrange(scene: Scene, start: LagrangeStart, body: Body, design: Holding) -
 
 def _on_track(scene: Scene, start: DesignedStart, body: Body, design: Track) -> State:
     return _beside((design.position[0], design.velocity[0]), start)
-
-
-def _cartesian(scene: Scene, start: CartesianStart, body: Body, design: None) -> State:
-    return np.array(start.position), np.array(start.velocity)
 
 
 def _spiral(scene: Scene, start: SpiralStart, body: Body, design: LogarithmicSpiral) -> State:
@@ -205,7 +202,7 @@ def _radius(start: DisplacedStart | HeliostationaryStart | LagrangeStart) -> flo
 
 
 STARTS: dict[type[Section], Departure[Any]] = {  # the functions of each record take the class that it stands under
-    CartesianStart: Departure[CartesianStart](_cartesian, towards=True),
+    CartesianStart: Departure[CartesianStart](known_starts.cartesian, towards=True),
     ElementsStart: Departure[ElementsStart](_elements, words=_elements_words, initial_orbit=True),
     CircularStart: Departure[CircularStart](_circular, words=_circular_words, initial_orbit=True),
     DisplacedStart: Departure[DisplacedStart](
@@ -228,4 +225,10 @@ STARTS: dict[type[Section], Departure[Any]] = {  # the functions of each record 
         _on_track, designed_orbits.flat_ellipse, _flat_ellipse_words, _first_turn
     ),
     SpiralStart: Departure[SpiralStart](_spiral, designed_orbits.logarithmic_spiral, _spiral_words),
+    TleStart: Departure[TleStart](known_starts.element_set, words=known_starts.element_set_words, initial_orbit=True),
+    OemStart: Departure[OemStart](known_starts.message, initial_orbit=True),
+    PlanetStart: Departure[PlanetStart](known_starts.planet, words=known_starts.planet_words, towards=True),
+    SmallBodyStart: Departure[SmallBodyStart](
+        known_starts.small_body, words=known_starts.small_body_words, towards=True
+    ),
 }

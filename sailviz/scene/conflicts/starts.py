@@ -7,9 +7,10 @@ from math import inf, pi
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 from sailviz.constants import RADIUS_EARTH
-from sailviz.scene.conflicts import start_points
+from sailviz.scene.conflicts import known_starts, start_points
 from sailviz.scene.conflicts.answers import Faults, never, nothing, unknown
 from sailviz.scene.device import SolarSail
+from sailviz.scene.known_starts import OemStart, PlanetStart, SmallBodyStart, TleStart
 from sailviz.scene.start import (
     CartesianStart,
     CircularStart,
@@ -80,7 +81,9 @@ def _spiral(scene: Scene, start: SpiralStart) -> Faults:
 
 
 STARTS: dict[type[Section], StartFits[Any]] = {  # the functions of each record take the class that it stands under
-    CartesianStart: StartFits[CartesianStart](point=start_points.cartesian, velocity=start_points.cartesian_velocity),
+    CartesianStart: StartFits[CartesianStart](
+        point=start_points.cartesian, velocity=start_points.cartesian_velocity, conflicts=known_starts.cartesian
+    ),
     ElementsStart: StartFits[ElementsStart](
         keplerian=True,
         inclined=lambda start: start.inclination != 0,
@@ -105,4 +108,8 @@ STARTS: dict[type[Section], StartFits[Any]] = {  # the functions of each record 
     PlanetFollowingStart: StartFits[PlanetFollowingStart](held=True, track=True, point=start_points.planet_following),
     FlatEllipseStart: StartFits[FlatEllipseStart](held=True, track=True, point=start_points.flat_ellipse),
     SpiralStart: StartFits[SpiralStart](point=start_points.spiral, conflicts=_spiral),
+    TleStart: StartFits[TleStart](conflicts=known_starts.element_set),
+    OemStart: StartFits[OemStart](conflicts=known_starts.message),
+    PlanetStart: StartFits[PlanetStart](conflicts=known_starts.planet),
+    SmallBodyStart: StartFits[SmallBodyStart](conflicts=known_starts.small_body),
 }

@@ -77,7 +77,7 @@ def choose(model, position, velocity, duration, breaks=(0.0,), wanted="auto", to
     low = surface > 0.0 and axis <= LOW * surface and duration >= FEWEST_TURNS * turn
     rarely = duration / (kinks + 1) >= STEPS_A_START_COSTS * ANGLE / (2 * np.pi) * turn
     # at kinks the multistep method halves its step and halves it again, and takes ten times as long
-    if not low or not rarely or _kinked(p):
+    if not low or not rarely or _kinked(p) or p.pushed.device:
         return _without_equal_steps(model)
     return Choice(GAUSS_JACKSON, f"the orbit is low, of eccentricity {e:.2g}, and turns {duration / turn:.0f} times")
 
@@ -88,6 +88,8 @@ def _without_equal_steps(model) -> Choice:
     sail = device in (SOLAR_SAIL, ELECTRIC_SAIL)
     if _kinked(p) or p.callbacks.edges:
         return Choice(DOP853, "a force read from tables or switched by the shadow has kinks")
+    if p.pushed.device or p.sky.bodies:
+        return Choice(DOP853, "other bodies pull, or the light is not at the centre")
     if p.third_body.mu != 0.0:  # of whose pull the correction between two sweeps of collocation knows nothing
         return Choice(DOP853, "a body besides the central one may be passed closely")
     if p.callbacks.user_steering or p.callbacks.user_force or device == CALLED or steering == attitude.CALLED:

@@ -269,7 +269,7 @@ def advance_compiled(
         speed = np.sqrt(y[3] * y[3] + y[4] * y[4] + y[5] * y[5])
         dynamical = r / max(speed, np.sqrt(mu / r))
         clock[STEP] = min(3.0 * tolerance**0.125 * dynamical, largest_step)
-    edged = p.callbacks.edges != 0 and tolerance < WORTH_A_STEP
+    edged = p.callbacks.edges != 0 and (tolerance < WORTH_A_STEP or p.sides.needed != 0)
     row, ended = open_block(count)
     pause = count[STEPS] + count[REJECTED] + (piece if piece > 0 else first_piece(p))
     t, interval = clock[TIME], count[INTERVAL]

@@ -107,6 +107,8 @@ def model(
     control: Callback | None = None,
     control_table: np.ndarray[Any, Any] | None = None,
     control_law: np.ndarray[Any, Any] | None = None,
+    sky: dict[str, Sequence[float]] | None = None,
+    sky_table: np.ndarray[Any, Any] | None = None,
     user_steering: int = 0,
     user_force: int = 0,
 ) -> Model:
@@ -116,7 +118,8 @@ def model(
     device_parameters, steering_parameters, third_body, sun, solar_level, air, plasma : the Parameters of these in
     their order; table (k, 7) of `attitude.table`; air_table, plasma_table of the environment's modules; steer_as : the
     sail for which a primer law steers, id and parameters. The callbacks of steering and device belong to the kinds
-    CALLED; forces add up.
+    CALLED; forces add up. sky : Parameters of the sky's parts by name, `sky`, `magnetosphere`, `by_light`, `pushed`;
+    sky_table of `environment.sky.packed`.
     """
     parameters = np.zeros(1, PARAMETERS)
     p = parameters[0]
@@ -132,7 +135,12 @@ def model(
         "air": air,
         "plasma": plasma,
     }
-    parts |= {STEERING_PARTS.get(steering, ""): steering_parameters, DEVICE_PARTS.get(device, ""): device_parameters}
+    parts |= sky or {}
+    pushed = int(parts["pushed"][0]) if "pushed" in parts else NO_DEVICE
+    parts |= {
+        STEERING_PARTS.get(steering, ""): steering_parameters,
+        DEVICE_PARTS.get(pushed or device, ""): device_parameters,
+    }
     for name, values in parts.items():
         if len(values):
             p[name] = tuple(PARTS[name](*values))
@@ -174,6 +182,7 @@ def model(
         "solar_level": solar_level_table,
         "control": control_table,
         "control_law": control_law,
+        "sky": sky_table,
     }
     for place, rows in named.items():
         if rows is not None:
@@ -186,7 +195,9 @@ def model(
 
 def loses_mass(model: Model) -> bool:
     """Whether the device burns propellant, or, being one's own, may."""
-    return model.device == CALLED or (model.device == THRUSTER and model.named.thruster.inverse_exhaust != 0.0)
+    if model.device == CALLED:
+        return model.named.pushed.device == NO_DEVICE
+    return model.device == THRUSTER and model.named.thruster.inverse_exhaust != 0.0
 
 
 @inlined

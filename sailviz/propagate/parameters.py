@@ -14,9 +14,9 @@ from typing import NamedTuple, get_type_hints
 import numpy as np
 
 from sailviz.compiled import late, layout
-from sailviz.environment import atmosphere, gravity, grid, ionosphere, solar_level, sun, third_body
+from sailviz.environment import atmosphere, gravity, grid, ionosphere, magnetosphere, sky, solar_level, sun, third_body
 from sailviz.propulsion import electric_sail, plasma_brake, solar_sail, thruster
-from sailviz.steering import attitude
+from sailviz.steering import attitude, by_light
 
 
 class Kinds(NamedTuple):
@@ -41,6 +41,14 @@ class Primer(NamedTuple):
     kind: int = 0  # of steering.attitude: PRIMER, LOCAL or LYAPUNOV
     sail: int = 0  # the sail for which the law steers, of propulsion.devices
     mu: float = 0.0  # m3/s2, for the laws that know the orbit
+
+
+class Pushed(NamedTuple):
+    """A sail that callbacks push (sky_callback): which, and its air drag by attitude."""
+
+    device: int = 0  # of propulsion.devices
+    drag_area: float = 0.0  # m2, drag coefficient times the area that faces the flow; 0: no drag by attitude
+    edge_area: float = 0.0  # m2, the same of what a sail that stands edge-on shows
 
 
 class Callbacks(NamedTuple):
@@ -68,6 +76,7 @@ class Places(NamedTuple):
     sail: int = 0  # parameters of the sail for which a primer law steers
     control: int = 0
     control_law: int = 0
+    sky: int = 0  # places of bodies, see environment.sky
     end: int = 0  # length of the array
     address: int = 0  # of the array itself, which the Model keeps alive
 
@@ -93,6 +102,11 @@ class Parameters(NamedTuple):
     table: attitude.Table
     primer: Primer
     held: grid.Held
+    sky: sky.Parameters
+    sides: sky.Sides
+    magnetosphere: magnetosphere.Parameters
+    by_light: by_light.Parameters
+    pushed: Pushed
     callbacks: Callbacks
     places: Places
 

@@ -113,6 +113,9 @@ VALUES: dict[str, Value] = {
     "quasi_circular_altitude": _acted("quasi_circular_altitude_m"),
     "sunlit": _acted("sunlit"),  # its mean is the share of the time
     "sunlit_fraction": _acted("sunlit_fraction"),  # of the Sun's disc
+    "sun_distance": _acted("sun_distance_m"),  # from whatever shines
+    "moon_distance": _acted("moon_distance_m"),
+    "in_solar_wind": _acted("in_solar_wind"),  # its mean is the share of the time
     "force_law_valid": _acted("force_law_valid"),
     "plasma_force": _acted("plasma_force_N_m"),
     "plasma_density": _acted("plasma_density_per_m3"),

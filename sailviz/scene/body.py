@@ -15,6 +15,7 @@ class CustomBody(Section):
     radius: Annotated[Length, Field(ge=0)] = 0.0
 
 
+CENTRE = Literal["sun", "mercury", "venus", "earth", "moon", "mars", "jupiter", "saturn"]
 PLANET = Literal["mercury", "venus", "earth", "mars", "jupiter", "saturn"]
 
 

@@ -24,6 +24,7 @@ from sailviz.scene.values import (
 )
 
 DESIGNED = Literal["as designed"]
+BY_ATTITUDE = Literal["attitude"]  # what a sail shows to the flow, and its edge_area beside
 
 
 class FilmCoefficients(Section):
@@ -58,8 +59,9 @@ class Device(Section):
 
     mass: Annotated[Mass, POSITIVE] | None = None
     active: Intervals | None = None
-    drag_area: Annotated[Area, POSITIVE] | None = None
+    drag_area: Annotated[Area, POSITIVE] | BY_ATTITUDE | None = None
     drag_coefficient: Annotated[float, POSITIVE] = 2.2
+    edge_area: Annotated[Area, Field(ge=0)] | None = None
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:

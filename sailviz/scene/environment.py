@@ -1,16 +1,14 @@
-"""What surrounds a craft: [environment] and the kinds inside it, and [light]."""
+"""What surrounds a craft: [environment] and the kinds inside it."""
 
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from sailviz.constants import SPEED_OF_LIGHT
 from sailviz.scene.values import (
     POSITIVE,
     Angle,
     ForcePerLength,
     IonMass,
-    Irradiance,
     Length,
     MassDensity,
     Moment,
@@ -176,25 +174,13 @@ class SpaceWeather(Section):
         return self
 
 
-class Light(Section):
-    """How bright the Sun is at 1 au, which makes a characteristic acceleration of area and mass: the pressure of its
-    light on a black surface facing it, or its irradiance, which over the speed of light is that pressure."""
+class MagneticSphere(Section):
+    """A sphere round the central body into which the solar wind does not come."""
 
-    pressure: Annotated[Pressure, POSITIVE] | None = None
-    irradiance: Annotated[Irradiance, POSITIVE] | None = None
+    radius: Annotated[Length, POSITIVE]
 
-    @model_validator(mode="after")
-    def _said_once(self) -> Self:
-        one_of(self, "pressure", "irradiance")
-        return self
 
-    @property
-    def radiation_pressure(self) -> float:
-        """N/m2 at 1 au."""
-        if self.pressure is not None:
-            return self.pressure
-        assert self.irradiance is not None  # or the section would not have been accepted
-        return self.irradiance / SPEED_OF_LIGHT
+SkyWord = Literal["sun", "mercury", "venus", "earth", "moon", "mars", "jupiter", "saturn", "earth-moon"]
 
 
 class ThirdBody(Section):
@@ -218,7 +204,7 @@ class Environment(Section):
     solar_flux: Annotated[SolarFlux, POSITIVE] | Literal["cycle"] | None = None
     space_weather: SpaceWeather | None = None
     sun_right_ascension: Angle | None = None
-    shadow: Literal["cylinder", "cone"] = "cylinder"
+    shadow: Literal["cylinder", "cone"] | None = None
     magnetic_sensitivity: Annotated[float, Field(ge=0, le=1)] = 0.0
     third_body: ThirdBody | None = None
     j2: bool = False
@@ -226,3 +212,11 @@ class Environment(Section):
     j4: bool = False
     corotation: bool = False
     height_above: Literal["sphere", "ellipsoid"] = "sphere"
+    gravity_of: Annotated[list[SkyWord], Field(min_length=1)] | None = None
+    shadow_of: list[SkyWord] | None = None
+    magnetosphere: Literal["shue-1998", "none"] | MagneticSphere | None = None
+
+    @property
+    def gravity_of_bodies(self) -> list[str]:
+        """Words of the bodies that pull beside the central one."""
+        return [] if self.gravity_of is None else list(self.gravity_of)

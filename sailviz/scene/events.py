@@ -68,6 +68,8 @@ class Crossing(Section):
     thrust_acceleration: Annotated[Acceleration, NOT_NEGATIVE] | None = None
     thrust_factor: float | None = None
     sunlit_fraction: Annotated[float, Field(gt=0, lt=1)] | None = None
+    sun_distance: Annotated[Length, POSITIVE] | None = None
+    moon_distance: Annotated[Length, POSITIVE] | None = None
     air_drag: Annotated[Force, POSITIVE] | None = None
     plasma_force: Annotated[ForcePerLength, POSITIVE] | None = None
     plasma_density: Annotated[NumberDensity, POSITIVE] | None = None
@@ -83,6 +85,7 @@ class Crossing(Section):
         "closed_form_error": "compares with a motion begun in the first row: a state alone does not tell it",
         "quasi_circular_altitude": "belongs to the approximation, not to the flight",
         "sunlit": "is 0 or 1 and crosses no value: watch sunlit_fraction = 0.5",
+        "in_solar_wind": 'is 0 or 1 and crosses no value: "wind on" and "wind off" are found without being asked for',
         "force_law_valid": "is 0 or 1 and crosses no value",
         "thrust_voltage": "jumps at the controller's updates and crosses nothing between them: watch thrust_factor",
         "wind_pressure": "jumps whenever the wind is drawn and crosses nothing between: watch thrust_factor",

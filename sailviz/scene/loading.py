@@ -21,15 +21,18 @@ from pydantic_core import ValidationError
 
 from sailviz.calendar import naive_utc
 from sailviz.errors import Fault, SceneError
-from sailviz.scene.body import CustomBody, Target
+from sailviz.scene.body import CENTRE, CustomBody, Target
 from sailviz.scene.conflicts import conflicts
 from sailviz.scene.conflicts.known_starts import dated
 from sailviz.scene.device import Devices
-from sailviz.scene.environment import Environment, Light
+from sailviz.scene.environment import Environment
+from sailviz.scene.ephemeris_name import EphemerisName
 from sailviz.scene.events import Watched
 from sailviz.scene.faults import faults_of, locate
+from sailviz.scene.light import Light
 from sailviz.scene.overrides import overridden, place_of
 from sailviz.scene.sections import Approximation, Chaos, Ensemble, Expectation, Limits, Propagation, Recording
+from sailviz.scene.sky import shadow_kind
 from sailviz.scene.start import Start
 from sailviz.scene.steering import Steering
 from sailviz.scene.units_in_keys import convert
@@ -37,7 +40,14 @@ from sailviz.scene.values import Moment, Section
 from sailviz.shipped import shipped_scenes
 from sailviz.words import nearest
 
-UNSAID = (("environment", "space_weather"), ("start", "frame"))  # left out of what a scene is where they are not said
+UNSAID = {  # by table, keys without which scenes were complete before they were known
+    "": ("light", "frame"),
+    "start": ("frame",),
+    "light": ("kind", "distance", "longitude", "obliquity", "period", "direction", "mu", "radius"),
+    "environment": ("gravity_of", "shadow_of", "magnetosphere", "space_weather"),
+    "device": ("edge_area",),
+    "steering": ("in_shadow", "minimum_perigee", "margin"),
+}
 
 
 class Scene(Section):
@@ -49,8 +59,9 @@ class Scene(Section):
     look_for: list[str] = []
     family: Literal["displaced", "spirals", "deorbit", "wind", "transfers"] | None = None
     epoch: Moment | None = None
-    ephemeris: Literal["mean-elements", "de421"] = "mean-elements"
-    body: Literal["sun", "earth"] | CustomBody = "sun"
+    ephemeris: EphemerisName = "mean-elements"
+    body: CENTRE | CustomBody = "sun"
+    frame: Literal["ecliptic-j2000", "icrf", "equator-of-date"] | None = None
     start: Start
     device: Devices
     steering: Steering | None = None
@@ -86,12 +97,15 @@ class Scene(Section):
         return self._raw
 
     def resolved(self) -> dict[str, Any]:
-        """Every value, defaults included, SI, ready for JSON. A light that is not said is left out, and so are keys
-        that came later: what scenes were before they could be said, they still are."""
-        values = self.model_dump(mode="json", exclude={"light"} if self.light is None else None)
-        for table, key in UNSAID:
-            if values[table].get(key, "") is None:
-                del values[table][key]
+        """Every value, defaults included, SI, ready for JSON. Keys that came later are left out where they are
+        not said: what scenes were before they could be said, they still are."""
+        values = self.model_dump(mode="json")
+        tables = {"": values, **{name: values[name] or {} for name in UNSAID if name}}
+        for name, keys in UNSAID.items():
+            for key in keys:
+                if tables[name].get(key, "") is None:
+                    del tables[name][key]
+        values["environment"]["shadow"] = shadow_kind(self)
         return values
 
     def identity(self) -> str:

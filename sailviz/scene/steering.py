@@ -7,6 +7,8 @@ from pydantic import Field, model_validator
 
 from sailviz.scene.values import HALF_TURN, POSITIVE, Angle, Angles, Length, Section, Three, Time, Times, wrong
 
+InShadow = Literal["hold", "edge-on"]  # how a sail stands in full shadow: as its law says, or edge-on to the flow
+
 
 class PlainSteering(Section):
     """A law without parameters."""
@@ -14,6 +16,13 @@ class PlainSteering(Section):
     kind: Literal[
         "sun-facing", "radial", "circumferential", "tangential", "vertical", "gravity-gradient", "as designed"
     ]
+    in_shadow: InShadow | None = None
+
+    @model_validator(mode="after")
+    def _shaded(self) -> Self:
+        if self.in_shadow is not None and self.kind != "sun-facing":
+            raise wrong('in_shadow belongs to a sail that is steered by the light: kind = "sun-facing"')
+        return self
 
 
 class SpinningSteering(Section):
@@ -30,6 +39,25 @@ class FrameSteering(Section):
     kind: Literal["orbital", "meridian"]
     pitch: Annotated[Angle, HALF_TURN]
     clock: Angle = 0.0
+
+
+class SunFrameSteering(Section):
+    """Pitch from the line of the light, and clock angle about it: from the north of the ecliptic, or from the axis of
+    the orbit about the central body, towards the motion that a planet has round its light."""
+
+    kind: Literal["sun-frame"]
+    pitch: Annotated[Angle, HALF_TURN]
+    clock: Angle = 0.0
+    reference: Literal["ecliptic", "orbit"] = "ecliptic"
+    in_shadow: InShadow | None = None
+
+
+class OnOffSteering(Section):
+    """Facing the light while the craft flies away from it, edge-on to light and flow while it flies towards it."""
+
+    kind: Literal["on-off"]
+    by: Literal["motion"] = "motion"
+    in_shadow: InShadow | None = None
 
 
 class InertialSteering(Section):
@@ -79,6 +107,7 @@ class PrimerSteering(Section):
     device itself unless another is named."""
 
     reckons_with: SAIL_LAW | None = None
+    in_shadow: InShadow | None = None
 
 
 class OptimalSteering(PrimerSteering):
@@ -121,11 +150,21 @@ class SmoothedSteering(Section):
 
 
 class LocalSteering(PrimerSteering):
-    """Whatever changes one orbital element fastest at every moment."""
+    """Whatever changes one orbital element fastest at every moment, the distance of the apogee or of the perigee from
+    the centre included, round whatever body. minimum_perigee : distance from the centre below which the perigee must
+    not sink; over the margin above it the law gives way to what raises the perigee."""
 
     kind: Literal["locally-optimal"]
-    goal: Literal["energy", "semi-major-axis", "eccentricity", "inclination", "raan", "argument"]
+    goal: Literal["energy", "semi-major-axis", "eccentricity", "inclination", "raan", "argument", "apogee", "perigee"]
     sense: Literal["increase", "decrease"] = "increase"
+    minimum_perigee: Annotated[Length, POSITIVE] | None = None
+    margin: Annotated[Length, POSITIVE] | None = None
+
+    @model_validator(mode="after")
+    def _guarded(self) -> Self:
+        if self.margin is not None and self.minimum_perigee is None:
+            raise wrong("margin stands over minimum_perigee: give that too")
+        return self
 
 
 class LyapunovSteering(PrimerSteering):
@@ -145,6 +184,8 @@ class LyapunovSteering(PrimerSteering):
 Steering = Annotated[
     PlainSteering
     | FrameSteering
+    | SunFrameSteering
+    | OnOffSteering
     | InertialSteering
     | TableSteering
     | SpinningSteering

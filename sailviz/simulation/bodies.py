@@ -6,16 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from sailviz.constants import MU_EARTH, MU_SUN, RADIUS_EARTH, RADIUS_SUN
+from sailviz import sky
 from sailviz.run.arrays import Body
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
-BODIES = {
-    "sun": Body("Sun", MU_SUN, RADIUS_SUN),
-    "earth": Body("Earth", MU_EARTH, RADIUS_EARTH),
-}
+BODIES = {word: Body(body.name, body.mu, body.radius) for word, body in sky.BODIES.items()}
 
 
 def body_of(scene: Scene) -> Body:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar
 import numpy as np
 
 from sailviz import ephemeris
-from sailviz.constants import ATOMIC_MASS, AU, RADIATION_PRESSURE, STANDARD_GRAVITY
+from sailviz.constants import ATOMIC_MASS, AU, MU_SUN, RADIATION_PRESSURE, STANDARD_GRAVITY
 from sailviz.environment import ionosphere
 from sailviz.propagate import dynamics, events
 from sailviz.propagate import low_orbit_callback as low_orbit
@@ -23,6 +23,7 @@ from sailviz.run.arrays import Body, Craft
 from sailviz.run.devices import LABELS
 from sailviz.scene.device import Device as DeviceSection
 from sailviz.scene.device import ElectricSail, NoDevice, PlasmaBrake, SolarSail, Thruster
+from sailviz.scene.sky import light_mu
 from sailviz.scene.values import Section
 from sailviz.simulation.bodies import epoch_of
 from sailviz.simulation.lowered import Array, Columns, LoweredDevice, Words, no_columns, no_words
@@ -93,7 +94,12 @@ def radiation_pressure(scene: Scene) -> float | None:
     """N/m2 at 1 au where a sail's area and mass make its strength; None where nothing depends on it."""
     if not isinstance(scene.device, SolarSail) or not scene.device.by_area:
         return None
-    return RADIATION_PRESSURE if scene.light is None else scene.light.radiation_pressure
+    said = None if scene.light is None else scene.light.radiation_pressure
+    if said is None:
+        return RADIATION_PRESSURE
+    assert scene.light is not None
+    distance = scene.light.reference_distance
+    return said if distance is None else said * (distance / AU) ** 2
 
 
 def _film_strength(device: SolarSail, scene: Scene, design: Any) -> float:
@@ -102,7 +108,9 @@ def _film_strength(device: SolarSail, scene: Scene, design: Any) -> float:
         return said
     film, pressure = _film(device), radiation_pressure(scene)
     if pressure is None:
-        return film.characteristic_acceleration(lightness=device.lightness_number)
+        mu = light_mu(scene)
+        assert mu is not None  # or the scene would not have been accepted
+        return film.characteristic_acceleration(lightness=device.lightness_number) * (mu / MU_SUN)
     return film.characteristic_acceleration(area=device.area, mass=device.mass, pressure=pressure)
 
 

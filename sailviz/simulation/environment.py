@@ -31,6 +31,7 @@ from sailviz.scene.environment import (
     GammaWind,
     IonosphereTable,
     LognormalWind,
+    MagneticSphere,
     MsisAtmosphere,
     ReplayedWind,
     SpaceWeather,
@@ -38,6 +39,7 @@ from sailviz.scene.environment import (
     SteadyWind,
     ThirdBody,
 )
+from sailviz.scene.sky import shadow_kind
 from sailviz.scene.values import Section
 from sailviz.simulation import space_weather
 from sailviz.simulation.lowered import Array, Columns, Place, Words, no_columns, no_words
@@ -116,8 +118,9 @@ def _density_of_table(part: IonosphereTable, named: Parameters, place: Array, an
 
 # ---------------------------------------------------------------- air
 def _drag_area(scene: Scene) -> float:
-    assert scene.device.drag_area is not None  # or the scene would not have been accepted
-    return scene.device.drag_area * scene.device.drag_coefficient
+    area = scene.device.drag_area
+    assert area is not None  # or the scene would not have been accepted
+    return 0.0 if isinstance(area, str) else area * scene.device.drag_coefficient  # by attitude: the sky's callback
 
 
 def _exponential_air(part: ExponentialAtmosphere, place: Place) -> dict[str, Any]:
@@ -187,6 +190,7 @@ ENVIRONMENT: dict[type[Section], Part[Any]] = {  # the functions of each record 
     SpaceWeather: Part[SpaceWeather](
         space_weather.lowered, words=space_weather.in_words, columns=space_weather.columns
     ),
+    MagneticSphere: Part[MagneticSphere](),  # it acts under the sky: see simulation/sky.py
     ThirdBody: Part[ThirdBody](
         lambda part, place: {"third_body": _orbit_of_third_body(part)},
         body=_third_body_drawn,
@@ -218,7 +222,7 @@ def surroundings(scene: Scene, body: Body, epoch: np.datetime64 | None) -> dict[
     use = [J2_EARTH * around.j2, J3_EARTH * around.j3, J4_EARTH * around.j4]
     parts["j2_strength"], *parts["zonal"] = strengths(MU_EARTH, RADIUS_EARTH, *use)
     parts["sun"] = sun_parameters(epoch, around.sun_right_ascension or 0.0)
-    parts["shadow"] = {"cylinder": CYLINDER, "cone": CONE}[around.shadow] if watches_shadow(scene) else NO_SHADOW
+    parts["shadow"] = {"cylinder": CYLINDER, "cone": CONE}[shadow_kind(scene)] if watches_shadow(scene) else NO_SHADOW
     if getattr(scene.device, "eclipse", "on") != "on":
         parts["edges"] = low_orbit_edges()
     if around.solar_flux == "cycle":

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from sailviz import elements as orbital
 from sailviz import ephemeris
 from sailviz.constants import J2_EARTH, RADIUS_EARTH
-from sailviz.propagate import dynamics, voltage_callback
+from sailviz.environment import magnetosphere
+from sailviz.environment.eclipse import CONE, NO_SHADOW
+from sailviz.environment.sky import CENTRE
+from sailviz.propagate import dynamics, sky_callback, voltage_callback
 from sailviz.propagate import low_orbit_callback as low_orbit
+from sailviz.scene.sky import shadow_kind
 from sailviz.simulation.bodies import epoch_of
 from sailviz.simulation.device import device_of
 from sailviz.simulation.environment import parts_of, watches_shadow
 from sailviz.simulation.lowered import Array, Columns, Place
 from sailviz.simulation.plan import Plan
+from sailviz.simulation.sky import body_places
 from sailviz.simulation.steering import steering_of
 from sailviz.steering import attitude
 
@@ -33,7 +40,41 @@ def observe(p: Plan, time: Array, states: Array, factor: Array) -> tuple[Array, 
         if pull is not None:
             normal, more = pull(values, states, factor)
             acceleration = acceleration + more
+    if p.sky is not None:
+        columns |= sky_columns(p, time, states, normal)
     return normal, acceleration, throttle, columns
+
+
+def sky_columns(p: Plan, time: Array, states: Array, normal: Array) -> Columns:
+    """Columns (n,) of a run under a sky: how far light and Moon are, and what of light and wind comes through."""
+    assert p.sky is not None
+    values, named = sky_callback.observe_sky(time, states, normal, p.model.parameters), p.model.named
+    columns: Columns = {}
+    if named.sky.light != CENTRE:
+        columns["sun_distance_m"] = values[sky_callback.DISTANCE]
+    moon = body_places(p.sky, time).get("Moon")
+    if moon is not None:
+        columns["moon_distance_m"] = np.linalg.norm(states[:3].T - moon, axis=1)
+    if named.sky.shadow != NO_SHADOW:
+        columns["sunlit"] = values[sky_callback.SHARE] > 0.5
+        if named.sky.shadow == CONE:
+            columns["sunlit_fraction"] = values[sky_callback.SHARE]
+    if named.magnetosphere.kind != magnetosphere.NONE:
+        columns["in_solar_wind"] = values[sky_callback.WIND] > 0.5
+    if named.pushed.drag_area > 0.0:
+        columns["air_density_kg_m3"] = values[sky_callback.AIR_DENSITY]
+        columns["air_drag_N"] = values[sky_callback.AIR_DRAG]
+    return columns
+
+
+def axes_of_light(p: Plan, time: Array, states: Array, normal: Array) -> Array | None:
+    """Axes (n, 3, 3), as columns, in which pitch and clock are counted where the light is not at the centre: from the
+    light, along N x u, towards N."""
+    if p.sky is None or p.model.named.sky.light == CENTRE:
+        return None
+    values = sky_callback.observe_sky(time, states, normal, p.model.parameters)
+    rows = (sky_callback.FROM_LIGHT, sky_callback.EAST, sky_callback.NORTH)
+    return np.stack([values[row : row + 3].T for row in rows], axis=-1)
 
 
 def voltages(model: dynamics.Model) -> Array:
@@ -57,7 +98,7 @@ def low_orbit_columns(p: Plan, time: Array, states: Array, values: Array) -> Col
         columns["earth_rotation_rad"] = ephemeris.greenwich_sidereal_time(epoch, time)
     if watches_shadow(scene):
         columns["sunlit"] = values[low_orbit.LIGHT] > 0.5
-        if around.shadow == "cone":
+        if shadow_kind(scene) == "cone":
             columns["sunlit_fraction"] = values[low_orbit.LIGHT]
     if around.solar_flux is not None:
         columns["solar_flux_sfu"] = values[low_orbit.SOLAR_FLUX]

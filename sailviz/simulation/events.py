@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 from sailviz.propagate import events
 from sailviz.propagate.callbacks import Callback
-from sailviz.propagate.quantity_callback import INVERSE, QUANTITIES, quantity_callback
+from sailviz.propagate.quantity_callback import INVERSE, MAGNETOPAUSE, QUANTITIES, quantity_callback
+from sailviz.propagate.sky_quantities import sky_quantities
 from sailviz.propulsion.devices import PLASMA_BRAKE
 from sailviz.scene.quantities import ON_A_CIRCLE
+from sailviz.scene.sky import has_sky, magnetosphere_of
 from sailviz.simulation.device import device_of
 
 if TYPE_CHECKING:
@@ -83,6 +85,10 @@ def watched(scene: Scene, body: Body) -> tuple[tuple[str, ...], events.Watch]:
     for name, row in device_of(scene).events(scene.device, body):
         names.append(name)
         rows.append(row)
+    if magnetosphere_of(scene) != "none":
+        edge = events.QUANTITY + MAGNETOPAUSE
+        names += ["wind on", "wind off"]
+        rows += [(edge, 0.0, 1, events.RECORD), (edge, 0.0, -1, events.RECORD)]
     return tuple(names), events.watch(rows)
 
 
@@ -90,4 +96,6 @@ def quantities_watched(scene: Scene, device: int) -> Callback | None:
     """What tells the quantities that the scene's events watch; None where they watch none. device : of
     propulsion.devices."""
     stems = {event.quantity for event in scene.event if event.kind is None and event.quantity}
+    if has_sky(scene) and (stems or magnetosphere_of(scene) != "none"):
+        return sky_quantities()
     return quantity_callback(stems, device == PLASMA_BRAKE) if stems else None

@@ -18,6 +18,7 @@ from sailviz.run.resample import at as resampled
 from sailviz.scene.conflicts.known_starts import element_set_of, small_body_of
 from sailviz.scene.known_starts import OemStart, PlanetStart, SmallBodyStart, TleStart
 from sailviz.scene.named_files import folder_of
+from sailviz.scene.sky import frame_of
 from sailviz.scene.start import CartesianStart
 from sailviz.simulation.bodies import epoch_of
 from sailviz.sky.bodies import BODIES
@@ -49,11 +50,6 @@ def _epoch(scene: Scene) -> np.datetime64:
     epoch = epoch_of(scene)
     assert epoch is not None  # or the scene would not have been accepted
     return epoch
-
-
-def frame_of(scene: Scene) -> str:
-    """Of frames.FRAMES, in which a scene is flown."""
-    return "equator-of-date" if scene.body == "earth" else "ecliptic-j2000"
 
 
 def to_scene(scene: Scene, frame: str) -> np.ndarray:

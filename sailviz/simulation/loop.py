@@ -20,7 +20,7 @@ from sailviz.propulsion.devices import CALLED, THRUSTER
 from sailviz.run.arrays import Attitude, EnsembleStatistics, Event, Run, Setting, Thrust, join
 from sailviz.run.devices import SAILS
 from sailviz.scene.loading import SceneSource, load_scene
-from sailviz.simulation.environment_columns import observe, voltages
+from sailviz.simulation.environment_columns import axes_of_light, observe, voltages
 from sailviz.simulation.integration import INTEGRATORS, begun
 from sailviz.simulation.metadata import bodies, planets_in_view, setting_of
 from sailviz.simulation.no_progress import too_many, too_short, too_slow
@@ -274,7 +274,8 @@ def _observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, f
     normal, acceleration, throttle, columns = observe(p, time, states, factor)
     position, velocity = states[:3].T.copy(), states[3:6].T.copy()
     axes = frames.rtn(position, velocity)
-    pitch, cone, clock = frames.pitch_cone_clock(axes, normal, acceleration)
+    by_light = axes_of_light(p, time, states, normal)
+    pitch, cone, clock = frames.pitch_cone_clock(axes if by_light is None else by_light, normal, acceleration)
     turn = frames.quaternion(frames.body_axes(frames.stance(axes, normal), axes[..., 1]))
     stowed = ~np.any(normal, axis=1) if setting.craft.kind in SAILS else np.zeros(len(normal), bool)
     attitude = Attitude(np.where(stowed, np.nan, pitch), cone, np.where(stowed, np.nan, clock), normal, turn)

@@ -10,7 +10,7 @@ import numpy as np
 
 from sailviz.propagate.callbacks import Callback
 from sailviz.propulsion.solar_sail import Film
-from sailviz.steering import attitude
+from sailviz.steering import attitude, by_light
 
 if TYPE_CHECKING:
     from sailviz.run.arrays import Body
@@ -53,6 +53,7 @@ class LoweredSteering(NamedTuple):
     callback: Callback | None = None
     steer_as: tuple[int, Sequence[float]] = (0, ())  # the sail of a primer law: id and parameters
     primer_kind: int = 0
+    by_light: by_light.Parameters = by_light.Parameters()  # of a law that counts from the light
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class Flight:
     design: Any  # of a start that asks for one, else None
     position: Array
     velocity: Array
-    device: LoweredDevice
+    device: LoweredDevice  # before its sky
     sail: Film | str | None  # as design functions take it; None where the device is no sail
     strength: float | None  # its characteristic acceleration, m/s2
 

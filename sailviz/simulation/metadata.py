@@ -23,6 +23,7 @@ from sailviz.simulation.environment import ENVIRONMENT, drawn_bodies
 from sailviz.simulation.integration import INTEGRATORS, begun
 from sailviz.simulation.parameters_in_words import parameters_in_words
 from sailviz.simulation.plan import Plan
+from sailviz.simulation.sky import body_places
 from sailviz.simulation.start import departure
 from sailviz.simulation.steering import steering_of
 
@@ -162,6 +163,8 @@ def bodies(p: Plan, planets, time) -> dict[str, np.ndarray]:
     """Positions (n, 3) m of what is drawn beside the craft; nothing without an epoch."""
     if drawn := drawn_bodies(p.scene):
         return {body.name: body.position(time) for body in drawn}
+    if p.sky is not None and p.body.name != "Sun":
+        return body_places(p.sky, time)
     epoch = epoch_of(p.scene)
     if epoch is None:
         return {}

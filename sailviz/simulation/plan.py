@@ -34,6 +34,7 @@ from sailviz.simulation.bodies import body_of, epoch_of
 from sailviz.simulation.device import device_of, strength_or_none
 from sailviz.simulation.events import quantities_watched, watched
 from sailviz.simulation.identity import identity_of
+from sailviz.simulation.sky import SceneSky, sky_of, under_sky
 from sailviz.simulation.start import design_of, held_radius, initial_state
 from sailviz.simulation.steering import steering_of
 
@@ -56,6 +57,7 @@ class Plan:
     approximations: dict[str, FirstOrder]
     quasi_circular: QuasiCircular | None
     choice: Choice  # of the integrator
+    sky: SceneSky | None  # None where only the central body and its own light matter
     keep: tuple[object, ...]  # compiled user functions must live as long as the plan
     identity: str
 
@@ -77,6 +79,8 @@ def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
     shape = None if sail is None else sail(scene.device)
     flight = Flight(scene, design, position, velocity, device, shape, strength)
     steered = steering_of(scene.steering).lower(scene.steering, flight)
+    sky = sky_of(scene, body, epoch_of(scene))
+    device, steered, overhead = under_sky(sky, device, steered)
     addresses, keep = _own_functions(steering=steering, force=force)
     if steering is not None:
         steered = LoweredSteering(attitude.USER)
@@ -98,7 +102,7 @@ def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
         table=steered.table,
         quantity=quantities_watched(scene, device.kind),
         **addresses,
-        **merged({"forces": device.forces}, surroundings(scene, body, place.epoch), *around),
+        **merged({"forces": device.forces}, surroundings(scene, body, place.epoch), *around, overhead),
     )
 
     def nominal(times: np.ndarray) -> np.ndarray:
@@ -122,6 +126,7 @@ def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
         first_orders(scene, body, position, velocity, design),
         quasi_circular_decay(scene, position, velocity),
         _integrator(scene, model, position, velocity, when.breaks),
+        sky,
         keep,
         identity_of(scene, steering=steering, force=force),
     )

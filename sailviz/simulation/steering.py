@@ -18,6 +18,7 @@ from sailviz.design.displaced.holding import Track
 from sailviz.errors import Fault, SceneError
 from sailviz.propagate.dynamics import Model
 from sailviz.propagate.primer_callback import observe_primer, primer_steering
+from sailviz.propagate.sky_callback import observe_sky_primer
 from sailviz.propulsion import plasma_brake
 from sailviz.propulsion.devices import sail
 from sailviz.scene.start import CircularStart
@@ -26,11 +27,13 @@ from sailviz.scene.steering import (
     InertialSteering,
     LocalSteering,
     LyapunovSteering,
+    OnOffSteering,
     OptimalSteering,
     PlainSteering,
     PrimerSteering,
     SmoothedSteering,
     SpinningSteering,
+    SunFrameSteering,
     TableSteering,
 )
 from sailviz.scene.values import Section
@@ -44,7 +47,7 @@ from sailviz.simulation.lowered import (
     no_columns,
     no_words,
 )
-from sailviz.steering import attitude, primers
+from sailviz.steering import attitude, by_light, primers
 from sailviz.words import angle
 
 S = TypeVar("S", bound=Section)
@@ -114,6 +117,17 @@ def _frame(steering: FrameSteering, flight: Flight) -> LoweredSteering:
     return LoweredSteering(attitude.LAWS[steering.kind], direction)
 
 
+def _sun_frame(steering: SunFrameSteering, flight: Flight) -> LoweredSteering:
+    c = attitude.direction_parameters(steering.pitch, steering.clock)
+    by_orbit = int(steering.reference == "orbit")
+    law = by_light.Parameters(by_light.FRAME, float(c.radial), float(c.transverse), float(c.normal), by_orbit=by_orbit)
+    return LoweredSteering(attitude.CALLED, by_light=law)
+
+
+def _on_off(steering: OnOffSteering, flight: Flight) -> LoweredSteering:
+    return LoweredSteering(attitude.CALLED, by_light=by_light.Parameters(by_light.ON_OFF))
+
+
 def _inertial(steering: InertialSteering, flight: Flight) -> LoweredSteering:
     return LoweredSteering(attitude.INERTIAL, attitude.Inertial(*frames.unit(steering.direction)))
 
@@ -176,7 +190,8 @@ def _lyapunov_target(steering: LyapunovSteering) -> orbital.Elements:
 
 def _primer_columns(model: Model, time: Array, states: Array) -> Columns:
     """The primer's direction, and the thrust that the law expects along it as a share of the full one."""
-    direction, support = observe_primer(time, states, model.parameters)
+    follows = observe_sky_primer if model.named.by_light.law == by_light.PRIMER else observe_primer
+    direction, support = follows(time, states, model.parameters)
     return {"primer_direction": direction, "switching_function": support}
 
 
@@ -214,6 +229,10 @@ STEERINGS: dict[type[Section], Steering[Any]] = {  # the functions of each recor
     PlainSteering: Steering[PlainSteering](_plain, words=_plain_words, tether=_plain_tether),
     SpinningSteering: Steering[SpinningSteering](lambda steering, flight: LoweredSteering(), tether=_spinning_tether),
     FrameSteering: Steering[FrameSteering](_frame, words=lambda steering, design: [("pitch", angle(steering.pitch))]),
+    SunFrameSteering: Steering[SunFrameSteering](
+        _sun_frame, words=lambda steering, design: [("pitch", angle(steering.pitch)), ("clock", angle(steering.clock))]
+    ),
+    OnOffSteering: Steering[OnOffSteering](_on_off),
     InertialSteering: Steering[InertialSteering](_inertial),
     TableSteering: Steering[TableSteering](_table),
     OptimalSteering: Steering[OptimalSteering](_optimal, watches=_primer_columns),

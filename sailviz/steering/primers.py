@@ -17,7 +17,7 @@ import numpy as np
 
 from sailviz.compiled import inlined
 
-ENERGY, SEMI_MAJOR_AXIS, ECCENTRICITY, INCLINATION, RAAN, ARGUMENT = range(6)
+ENERGY, SEMI_MAJOR_AXIS, ECCENTRICITY, INCLINATION, RAAN, ARGUMENT, APOAPSIS, PERIAPSIS = range(8)
 GOALS = {
     "energy": ENERGY,
     "semi-major-axis": SEMI_MAJOR_AXIS,
@@ -25,6 +25,8 @@ GOALS = {
     "inclination": INCLINATION,
     "raan": RAAN,
     "argument": ARGUMENT,
+    "apogee": APOAPSIS,
+    "perigee": PERIAPSIS,
 }
 # Places in the numbers of `lyapunov_primer`, in the first three groups of one element each: p, f, g, h, k
 TARGETS, WEIGHTS, SCALES, REACHED = 0, 5, 10, 15
@@ -68,7 +70,8 @@ def locally_optimal_readiness(kind, sense, x, y, z, vx, vy, vz, mu):
 def locally_optimal_primer(kind, x, y, z, vx, vy, vz, mu):
     """d(element) / d(velocity), the primer that increases an element, inertial; negate it to decrease.
 
-    kind : one of GOALS; energy in m2/s2, semi-major axis in m, angles in rad, per m/s. On a circle eccentricity grows
+    kind : one of GOALS; energy in m2/s2, semi-major axis, apogee and perigee (of whatever body) in m, angles in rad,
+    per m/s. On a circle eccentricity grows
     from a periapsis here, in the reference plane inclination grows from a node here; the node's own angle and the
     argument of periapsis have no gradient there (0). On a planar orbit "argument" is the longitude of periapsis.
     """
@@ -112,6 +115,11 @@ def locally_optimal_primer(kind, x, y, z, vx, vy, vz, mu):
     lx = (2.0 * rq * vx - vq * x - radial * qx) / mu
     ly = (2.0 * rq * vy - vq * y - radial * qy) / mu
     lz = (2.0 * rq * vz - vq * z - radial * qz) / mu
+    if kind in (APOAPSIS, PERIAPSIS):  # a (1 + e), a (1 - e)
+        side = 1.0 if kind == APOAPSIS else -1.0
+        a = 1.0 / (2.0 / r - v2 / mu)
+        k, scale = (1.0 + side * e) * 2.0 * a * a / mu, side * a
+        return k * vx + scale * lx, k * vy + scale * ly, k * vz + scale * lz
     if kind == ARGUMENT:
         lx, ly, lz = lx / e, ly / e, lz / e
         if sine >= SMALL:  # the argument counts from the node, which moves as the plane turns

@@ -59,8 +59,14 @@ def test_every_fault_is_listed_at_once_with_its_line_and_the_nearest_word(tmp_pa
 
 def test_faults_between_sections_name_both():
     assert (
-        "needs the Sun"
-        in faults(with_parts(body="earth", device={"kind": "solar-sail", "lightness_number": 0.1}))["device.kind"]
+        "from the Sun line"
+        in faults(
+            with_parts(
+                body="earth",
+                device={"kind": "solar-sail", "lightness_number": 0.1},
+                steering={"kind": "orbital", "pitch_deg": 5},
+            )
+        )["steering.kind"]
     )
     found = faults(with_parts(device={"kind": "plasma-brake", "mass_kg": 4, "tether_length_m": 300}))
     assert set(found) == {"device.kind", "environment.ionosphere"}

@@ -51,7 +51,7 @@ def test_a_scene_without_light_is_what_it_was():
     ("values", "word"),
     [
         ({"light": {"pressure_uN_m2": 4.5, "irradiance_W_m2": 1361}}, "exactly one of pressure or irradiance"),
-        ({"light": {}}, "exactly one of pressure or irradiance"),
+        ({"light": {}}, "needs a kind, a pressure or an irradiance"),
         ({"light": {"irradiance_W_m2": -1}}, "greater than 0"),
         ({"light": {"irradiance": 1361}}, "irradiance_W_m2"),
         ({"light": {"irradiance_W_m2": np.nan}}, "finite"),

@@ -46,6 +46,9 @@ def gradient(quantity, r, v, step=1e-5):
 def element(name):
     if name == "energy":
         return lambda r, v: v @ v / 2 - MU / np.linalg.norm(r)
+    if name in ("apogee", "perigee"):
+        distance = {"apogee": elements.apoapsis, "perigee": elements.periapsis}[name]
+        return lambda r, v: float(distance(elements.elements(r, v, MU)))
     place = ["semi-major-axis", "eccentricity", "inclination", "raan", "argument"].index(name)
     return lambda r, v: float(astuple(elements.elements(r, v, MU))[place])
 

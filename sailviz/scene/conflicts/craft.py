@@ -16,13 +16,6 @@ if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
 
-def central_body(scene: Scene) -> Faults:
-    """Sails fly round the Sun."""
-    if not device_of(scene).sail or scene.body == "sun":
-        return []
-    return [("device.kind", f"a {scene.device.kind} needs the Sun as its central body")]
-
-
 def direction_of_thrust(scene: Scene) -> Faults:
     """A steering that points what the craft pushes with."""
     device, steering, found = device_of(scene), steering_of(scene), []
@@ -98,7 +91,7 @@ def has_surface(scene: Scene) -> bool:
 
 def brightness(scene: Scene) -> Faults:
     """How bright the light is matters where it makes an acceleration of area and mass."""
-    if scene.light is None or (isinstance(scene.device, SolarSail) and scene.device.by_area):
+    if scene.light is None or not scene.light.bright or (isinstance(scene.device, SolarSail) and scene.device.by_area):
         return []
     return [("light", "the brightness of the light acts on a solar sail that gives its area and its mass, on no other")]
 

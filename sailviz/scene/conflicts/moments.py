@@ -15,13 +15,21 @@ from sailviz.scene.conflicts.records import device_of, ionosphere_of
 from sailviz.scene.device import NoDevice
 from sailviz.scene.quantities import MEANS, PLACES, spellings
 from sailviz.scene.sections import STATISTICS_OF_ROWS
+from sailviz.scene.sky import has_sky, kernel_bodies, light_away, shades
 from sailviz.words import nearest, shown
 
 if TYPE_CHECKING:
     from sailviz.scene.events import Crossing
     from sailviz.scene.loading import Scene
 
-COME_WITH_DEVICES = {"impact", "thrust on", "thrust off", "brake off"}  # events that nobody asks for
+COME_WITH_DEVICES = {
+    "impact",
+    "thrust on",
+    "thrust off",
+    "brake off",
+    "wind on",
+    "wind off",
+}  # events that nobody asks for
 OVER_THE_SURFACE = ("altitude", "perigee_altitude", "apogee_altitude", "mean_altitude")
 OF_A_DEVICE = ("pitch", "cone", "clock", "thrust_acceleration", "thrust_factor")
 OF_A_BRAKE = ("plasma_force", "plasma_density", "tether_current", "tether_voltage", "tether_power", "tether_tilt")
@@ -34,7 +42,7 @@ def ephemeris(scene: Scene) -> Faults:
         return []
     found = []
     if not 1900 <= scene.epoch.year <= 2053 - scene.propagation.duration / YEAR:
-        found.append(("ephemeris", "DE421 reaches from 1899 to 2053"))
+        found.append(("ephemeris", "DE421 reaches from 1899 to 2053; this run goes beyond"))
     if find_spec("skyfield_data") is None or find_spec("jplephem") is None:
         found.append(("ephemeris", 'DE421 needs the extra "ephemeris": pip install "sailviz[ephemeris]"'))
     return found
@@ -95,7 +103,11 @@ def unknown_here(scene: Scene, item: Crossing, place: str) -> Faults:
         return [(where, "needs an ionosphere with a density, not a given force")]
     if stem == "air_drag" and scene.environment.atmosphere is None:
         return [(where, "there is no environment.atmosphere")]
-    if stem == "sunlit_fraction" and not lit_and_dark(scene):
+    if stem == "sun_distance" and not (has_sky(scene) and light_away(scene)):
+        return [(where, "the light is at the centre: watch radius, or nothing here depends on where the light is")]
+    if stem == "moon_distance" and "moon" not in kernel_bodies(scene):
+        return [(where, 'the Moon is not there: environment.gravity_of = ["moon"]')]
+    if stem == "sunlit_fraction" and not shades(scene) and not lit_and_dark(scene):
         return [(where, "a shadow is known round the Earth, with an epoch or environment.sun_right_ascension")]
     return []
 

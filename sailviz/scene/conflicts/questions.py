@@ -8,12 +8,13 @@ from sailviz.scene.conflicts import craft, departures, limits, low_orbit, moment
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.approximations import approximations
 from sailviz.scene.conflicts.ensembles import ensembles
+from sailviz.scene.conflicts.sky import under_its_sky
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
 QUESTIONS = (
-    craft.central_body,
+    under_its_sky,
     craft.direction_of_thrust,
     craft.planar_costates,
     craft.designed_orbit,

@@ -6,7 +6,7 @@ from __future__ import annotations
 from math import cos, hypot, sin, sqrt
 from typing import TYPE_CHECKING
 
-from sailviz.constants import AU, J2_EARTH, MU_EARTH, MU_SUN, RADIUS_EARTH, RADIUS_SUN
+from sailviz.constants import AU, J2_EARTH, MU_SUN, RADIUS_EARTH
 from sailviz.scene.start import (
     CartesianStart,
     CircularStart,
@@ -18,6 +18,7 @@ from sailviz.scene.start import (
     PlanetFollowingStart,
     SpiralStart,
 )
+from sailviz.sky.bodies import BODIES
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
@@ -34,12 +35,12 @@ PLANETS = {  # semi-major axis au and eccentricity, to a part in a thousand: the
 
 def radius_of_body(scene: Scene) -> float:
     """Of the central body, m; 0 of a point."""
-    return {"sun": RADIUS_SUN, "earth": RADIUS_EARTH}[scene.body] if isinstance(scene.body, str) else scene.body.radius
+    return BODIES[scene.body].radius if isinstance(scene.body, str) else scene.body.radius
 
 
 def mu_of_body(scene: Scene) -> float:
     """Gravitational parameter of the central body, m3/s2."""
-    return {"sun": MU_SUN, "earth": MU_EARTH}[scene.body] if isinstance(scene.body, str) else scene.body.mu
+    return BODIES[scene.body].mu if isinstance(scene.body, str) else scene.body.mu
 
 
 def cartesian(scene: Scene, start: CartesianStart) -> Vector:

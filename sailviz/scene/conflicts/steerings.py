@@ -16,10 +16,12 @@ from sailviz.scene.steering import (
     InertialSteering,
     LocalSteering,
     LyapunovSteering,
+    OnOffSteering,
     OptimalSteering,
     PlainSteering,
     SmoothedSteering,
     SpinningSteering,
+    SunFrameSteering,
     TableSteering,
 )
 from sailviz.scene.values import Section
@@ -110,6 +112,8 @@ STEERINGS: dict[str, SteeringFits[Any]] = {  # the functions of each record take
     "spinning": SteeringFits[SpinningSteering](tether=True, tether_only=True, brake=_spinning_brake),
     "orbital": _FRAME,
     "meridian": _FRAME,
+    "sun-frame": SteeringFits[SunFrameSteering](pitch=lambda steering: [steering.pitch], ensemble=_alone),
+    "on-off": SteeringFits[OnOffSteering](directs=False, ensemble=_alone),
     "inertial": SteeringFits[InertialSteering](ensemble=_alone),
     "table": SteeringFits[TableSteering](
         frame=lambda steering: steering.frame, pitch=lambda steering: steering.pitch, ensemble=_held_rows

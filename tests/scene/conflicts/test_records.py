@@ -82,7 +82,7 @@ def around(**parts):
 
 
 CONFLICTS = [  # base, what is changed, place, the words that say why
-    (EARTH, {"device": SAIL}, "device.kind", "needs the Sun as its central body"),
+    (EARTH, {"device": SAIL, **law("orbital", pitch_deg=30)}, "steering.kind", "is steered from the Sun line"),
     (SUN, {"device": THRUSTER}, "steering.kind", "a thruster needs a direction"),
     (SUN, {"device": SAIL, **law("tangential")}, "steering.kind", "a thruster's law"),
     (SUN, {"device": THRUSTER, **law("locally-optimal", goal="energy")}, "steering.kind", "steers a solar sail"),

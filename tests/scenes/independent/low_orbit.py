@@ -43,7 +43,7 @@ def sun(scene, t):
 def sunlit(scene, t, r):
     """Whether at least half of the Sun is seen. In the cone, the Sun's centre at the limb stands for that: 5 ms."""
     to_sun, radius = sun(scene, t), body(scene)[1]
-    if scene.environment.shadow == "cylinder":
+    if scene.environment.shadow != "cone":
         return r @ to_sun > 0 or np.linalg.norm(r - (r @ to_sun) * to_sun) > radius
     to_sun = AU * to_sun - r
     apart = np.arccos(-(to_sun @ r) / np.linalg.norm(to_sun) / np.linalg.norm(r))

@@ -14,7 +14,7 @@ floats, the callback's own numbers. Like an `entry`, a callback creates no array
 
 What comes out, four numbers: of a steering law the normal, made a unit vector (zero: no thrust), and the throttle; of a
 device the acceleration m/s2 at thrust factor `number` and the mass flow kg/s; of a force the acceleration m/s2 and
-nothing, `number` the thrust factor; of a voltage control the thrust factor from break `number` on.
+the mass flow kg/s, `number` the thrust factor; of a voltage control the thrust factor from break `number` on.
 """
 
 from __future__ import annotations

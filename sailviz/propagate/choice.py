@@ -36,9 +36,10 @@ class Choice:
     possible: bool = True
 
 
-def choose(model, position, velocity, duration, breaks=(0.0,), wanted="auto", tolerance=1e-10) -> Choice:
+def choose(model, position, velocity, duration, breaks=(0.0,), wanted="auto", tolerance=1e-10, beside=0) -> Choice:
     """The integrator for a run of duration s from position m and velocity m/s, whose thrust factor has kinks at breaks
-    s. wanted : "auto" or one of these; tolerance : of the distance. ValueError for another word.
+    s. wanted : "auto" or one of these; tolerance : of the distance; beside : how many devices push beside the first
+    one. ValueError for another word.
 
     Looks at the osculating orbit at the start alone: an orbit that becomes eccentric later is finished by the DOP853
     steps of gauss_jackson itself, correctly but no faster than by DOP853.
@@ -48,6 +49,10 @@ def choose(model, position, velocity, duration, breaks=(0.0,), wanted="auto", to
         raise ValueError(f"the integrator must be {words}, not {wanted!r}.")
     if wanted in (COLLOCATION, DOP853):
         return Choice(wanted, ASKED)
+    if beside:  # whose attitudes and times only their own callbacks know
+        if wanted == GAUSS_JACKSON:
+            return Choice(DOP853, "several devices push, each at times of its own", False)
+        return Choice(DOP853, "several devices push, each at times of its own")
     p = model.named
     mu, surface = p.gravity.mu, p.surface.radius
     r, v = np.asarray(position, float), np.asarray(velocity, float)

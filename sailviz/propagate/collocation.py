@@ -140,6 +140,7 @@ def advance_compiled(
     watched = len(watch.kind)
     at_once = fits_lanes(p)
     burns = p.kinds.device == CALLED or (p.kinds.device == THRUSTER and p.thruster.inverse_exhaust != 0.0)
+    burns = burns or p.callbacks.burns != 0
     varies = at_once and p.kinds.device != NO_DEVICE
     if count[STARTED] == 0:
         begin(s, watch, breaks, factors, p)

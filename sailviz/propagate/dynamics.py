@@ -102,6 +102,7 @@ def model(
     steering_callback: Callback | None = None,
     device_callback: Callback | None = None,
     forces: Sequence[Callback] = (),
+    burns: bool = False,
     edges: Callback | None = None,
     quantity: Callback | None = None,
     control: Callback | None = None,
@@ -118,8 +119,8 @@ def model(
     device_parameters, steering_parameters, third_body, sun, solar_level, air, plasma : the Parameters of these in
     their order; table (k, 7) of `attitude.table`; air_table, plasma_table of the environment's modules; steer_as : the
     sail for which a primer law steers, id and parameters. The callbacks of steering and device belong to the kinds
-    CALLED; forces add up. sky : Parameters of the sky's parts by name, `sky`, `magnetosphere`, `by_light`, `pushed`;
-    sky_table of `environment.sky.packed`.
+    CALLED; forces add up; burns : one of them burns propellant. sky : Parameters of the sky's parts by name, `sky`,
+    `magnetosphere`, `by_light`, `pushed`; sky_table of `environment.sky.packed`.
     """
     parameters = np.zeros(1, PARAMETERS)
     p = parameters[0]
@@ -173,7 +174,7 @@ def model(
         put(steering_callback.numbers, "steering")
     if device_callback is not None:
         put(device_callback.numbers, "device")
-    callbacks["forces"] = len(forces)
+    callbacks["forces"], callbacks["burns"] = len(forces), int(burns)
     pairs = [(one.address, put(one.numbers)) for one in forces]
     put(pairs, "forces")
     named = {
@@ -193,8 +194,17 @@ def model(
     return Model(parameters, all_tables)
 
 
+def without_user_force(model: Model) -> Model:
+    """The model as it is but for the user's own force."""
+    parameters = model.parameters.copy()
+    parameters["callbacks"]["user_force"] = 0
+    return model._replace(parameters=parameters)
+
+
 def loses_mass(model: Model) -> bool:
     """Whether the device burns propellant, or, being one's own, may."""
+    if model.parameters["callbacks"]["burns"][0]:
+        return True
     if model.device == CALLED:
         return model.named.pushed.device == NO_DEVICE
     return model.device == THRUSTER and model.named.thruster.inverse_exhaust != 0.0
@@ -274,14 +284,14 @@ def device_acceleration(t, x, y, z, vx, vy, vz, m, inverse, factor, p):
 
 @called
 def environment_forces(t, x, y, z, vx, vy, vz, m, factor, p):
-    """Acceleration, m/s2, of all forces that come as callbacks."""
+    """Acceleration, m/s2, of all forces that come as callbacks, and what they burn, kg/s."""
     tables = array_at(p.places.address, p.places.end)
-    ax, ay, az = 0.0, 0.0, 0.0
+    ax, ay, az, m_dot = 0.0, 0.0, 0.0, 0.0
     for i in range(p.callbacks.forces):
         address, own = int(tables[p.places.forces + 2 * i]), int(tables[p.places.forces + 2 * i + 1])
-        bx, by, bz, _ = call(address, own, t, x, y, z, vx, vy, vz, m, 0.0, 0.0, 0.0, p, factor)
-        ax, ay, az = ax + bx, ay + by, az + bz
-    return ax, ay, az
+        bx, by, bz, flow = call(address, own, t, x, y, z, vx, vy, vz, m, 0.0, 0.0, 0.0, p, factor)
+        ax, ay, az, m_dot = ax + bx, ay + by, az + bz, m_dot + flow
+    return ax, ay, az, m_dot
 
 
 @called
@@ -300,11 +310,11 @@ def derivative(t, y, factor, p, out):
         bx, by, bz = exponential_air_drag(x, yy, z, vx, vy, vz, m, 1.0 / inverse, p.surface.rotation, p.air)
         ax, ay, az = ax + bx, ay + by, az + bz
     if p.callbacks.forces != 0:
-        bx, by, bz = environment_forces(t, x, yy, z, vx, vy, vz, m, factor, p)
+        bx, by, bz, m_dot = environment_forces(t, x, yy, z, vx, vy, vz, m, factor, p)
         ax, ay, az = ax + bx, ay + by, az + bz
     if factor != 0.0 and p.kinds.device != NO_DEVICE and p.kinds.device != PLASMA_BRAKE:
-        bx, by, bz, m_dot = device_acceleration(t, x, yy, z, vx, vy, vz, m, inverse, factor, p)
-        ax, ay, az = ax + bx, ay + by, az + bz
+        bx, by, bz, flow = device_acceleration(t, x, yy, z, vx, vy, vz, m, inverse, factor, p)
+        ax, ay, az, m_dot = ax + bx, ay + by, az + bz, m_dot + flow
     if p.callbacks.user_force != 0:
         bx, by, bz = user_vector(p.callbacks.user_force, t, x, yy, z, vx, vy, vz, m)
         ax, ay, az = ax + bx, ay + by, az + bz

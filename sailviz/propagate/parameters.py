@@ -62,6 +62,7 @@ class Callbacks(NamedTuple):
     edges: int = 0  # where steps have to end, see edges_callback
     quantity: int = 0  # what events watch beside the kinds that are built in, see quantity_callback
     forces: int = 0  # how many forces of the environment there are; Places.forces says where their addresses stand
+    burns: int = 0  # 1: one of them burns propellant
 
 
 class Places(NamedTuple):

@@ -185,6 +185,7 @@ class Run:
     environment: dict[str, np.ndarray]  # name with unit -> (n,) or (n, 3), e.g. "thrust_factor", "plasma_force_N_m"
     bodies: dict[str, np.ndarray]  # name -> (n, 3) m from the central body, e.g. "Earth", or "Sun" seen from the Earth
     approximations: dict[str, np.ndarray] = field(default_factory=dict)  # name -> (n, 3) m, another answer to the same
+    devices: dict[str, Thrust] = field(default_factory=dict)  # name -> what each device in a list of them does
     events: tuple[Event, ...] = ()
     ended: str = field(default="")  # why a run stopped before its duration, "" if it did not
 
@@ -213,6 +214,7 @@ COLUMNS = (  # fields of a Run that have a row for each time
     "environment",
     "bodies",
     "approximations",
+    "devices",
 )
 
 

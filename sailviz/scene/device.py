@@ -4,6 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from sailviz.scene.steering import Steering
 from sailviz.scene.values import (
     POSITIVE,
     Acceleration,
@@ -55,8 +56,11 @@ class FilmOptics(Section):
 
 
 class Device(Section):
-    """What every device may say."""
+    """What every device may say. mass : of the whole craft, also where it has several devices; name, steering : of one
+    in a list of them."""
 
+    name: Annotated[str, Field(min_length=1)] | None = None
+    steering: Steering | None = None
     mass: Annotated[Mass, POSITIVE] | None = None
     active: Intervals | None = None
     drag_area: Annotated[Area, POSITIVE] | BY_ATTITUDE | None = None

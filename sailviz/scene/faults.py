@@ -179,7 +179,8 @@ def _lines(text: str) -> dict[str, int]:
             table = f"{many[1]}[{index}]"
             found[table] = number
         elif header := re.match(r"\s*\[\s*([\w.-]+)\s*\]", line):
-            table = header[1]
+            first, dot, rest = header[1].partition(".")
+            table = f"{first}[{counts[first] - 1}].{rest}" if dot and first in counts else header[1]
             found[table] = number
         elif key := re.match(r"\s*([\w.-]+)\s*=", line):
             found.setdefault(f"{table}.{key[1]}" if table else key[1], number)

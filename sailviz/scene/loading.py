@@ -22,9 +22,10 @@ from pydantic_core import ValidationError
 from sailviz.calendar import naive_utc
 from sailviz.errors import Fault, SceneError
 from sailviz.scene.body import CENTRE, CustomBody, Target
-from sailviz.scene.conflicts import conflicts
+from sailviz.scene.conflicts import beside_conflicts, conflicts
 from sailviz.scene.conflicts.known_starts import dated
 from sailviz.scene.device import Devices
+from sailviz.scene.device_list import Beside, taken_apart
 from sailviz.scene.environment import Environment
 from sailviz.scene.ephemeris_name import EphemerisName
 from sailviz.scene.events import Watched
@@ -45,7 +46,7 @@ UNSAID = {  # by table, keys without which scenes were complete before they were
     "start": ("frame",),
     "light": ("kind", "distance", "longitude", "obliquity", "period", "direction", "mu", "radius"),
     "environment": ("gravity_of", "shadow_of", "magnetosphere", "space_weather"),
-    "device": ("edge_area",),
+    "device": ("edge_area", "name", "steering"),
     "steering": ("in_shadow", "minimum_perigee", "margin"),
 }
 
@@ -80,6 +81,8 @@ class Scene(Section):
     _text: str = PrivateAttr("")
     _source: str = PrivateAttr("scene")
     _raw: dict[str, Any] = PrivateAttr(default_factory=dict)
+    _beside: tuple[Devices, ...] = PrivateAttr(())  # devices that push beside `device`, each with its own steering
+    _place: int | None = PrivateAttr(None)  # of `device` in the list [[device]]; None where there is no list
 
     @property
     def text(self) -> str:
@@ -96,16 +99,44 @@ class Scene(Section):
         """The tables as tomllib would give them, with the values that were put over them."""
         return self._raw
 
+    @property
+    def beside(self) -> tuple[Devices, ...]:
+        """The devices that push beside `device`, in the order of the list; each has its own steering."""
+        return self._beside
+
+    @property
+    def place(self) -> int | None:
+        """Of `device` in the list [[device]]; None where there is no list."""
+        return self._place
+
+    @property
+    def devices(self) -> tuple[Devices, ...]:
+        """All devices, as they are written."""
+        at = self._place or 0
+        return (*self._beside[:at], self.device, *self._beside[at:])
+
+    def alone(self, device: Devices) -> Scene:
+        """The scene with one of the devices beside as its only one."""
+        changes = {"device": device, "steering": device.steering, "approximation": [], "ensemble": [], "chaos": []}
+        copy = self.model_copy(update=changes)
+        copy._beside = ()
+        return copy
+
     def resolved(self) -> dict[str, Any]:
         """Every value, defaults included, SI, ready for JSON. Keys that came later are left out where they are
         not said: what scenes were before they could be said, they still are."""
         values = self.model_dump(mode="json")
-        tables = {"": values, **{name: values[name] or {} for name in UNSAID if name}}
-        for name, keys in UNSAID.items():
-            for key in keys:
-                if tables[name].get(key, "") is None:
-                    del tables[name][key]
+        beside = [device.model_dump(mode="json") for device in self._beside]
+        tables = [("", values), *((name, values[name] or {}) for name in UNSAID if name)]
+        tables += [("device", device) for device in beside]
+        tables += [("steering", device["steering"] or {}) for device in beside]
+        for name, table in tables:
+            for key in UNSAID[name]:
+                if table.get(key, "") is None:
+                    del table[key]
         values["environment"]["shadow"] = shadow_kind(self)
+        if self._place is not None:
+            values["device"] = [*beside[: self._place], values["device"], *beside[self._place :]]
         return values
 
     def identity(self) -> str:
@@ -184,18 +215,32 @@ def build_scene(raw: dict[str, Any], values: Mapping[str, Any], text: str, name:
 
 
 def _validated(raw: dict[str, Any], text: str, source: str, given: list[str]) -> Scene:
-    fields, converted = convert(Scene, raw)
-    faults = converted.faults
+    apart = taken_apart(raw)
+    fields, converted = convert(Scene, apart.tables)
+    fields_beside, converted_beside = convert(Beside, {"device": apart.beside})
+    faults = apart.faults + apart.written(converted.faults) + apart.written(converted_beside.faults, beside=True)
+    scene, beside = None, Beside()
     try:
         scene = Scene.model_validate(fields)
     except ValidationError as error:
-        raise SceneError(locate(faults + faults_of(error, converted, Scene), text, given), source) from None
+        faults += apart.written(faults_of(error, converted, Scene))
+    try:
+        beside = Beside.model_validate(fields_beside)
+    except ValidationError as error:
+        faults += apart.written(faults_of(error, converted_beside, Beside), beside=True)
+    if scene is None:
+        raise SceneError(locate(faults, text, given), source)
     scene._text, scene._source, scene._raw = text, source, raw
+    scene._beside, scene._place = tuple(beside.device), apart.place if apart.listed else None
     if not faults:
         scene, told = dated(scene)
-        faults = [Fault(converted.path(place) or place, what) for place, what in told]
+        faults = apart.written(Fault(converted.path(place) or place, what) for place, what in told)
     if not faults:
-        faults = [Fault(converted.path(place) or place, what) for place, what in conflicts(scene)]
+        faults = apart.written(Fault(converted.path(place) or place, what) for place, what in conflicts(scene))
+    if not faults:
+        found = beside_conflicts(scene)
+        told_beside = (Fault(converted_beside.path(place) or place, what) for place, what in found)
+        faults = apart.written(told_beside, beside=True)
     if faults:
         raise SceneError(locate(faults, text, given), source)
     return scene
@@ -206,4 +251,7 @@ def schema() -> dict[str, Any]:
     """JSON Schema of the scene file, every spelling of every quantity included, for editors and other tools."""
     from sailviz.scene.json_schema import with_units
 
-    return with_units(Scene.model_json_schema())
+    found = Scene.model_json_schema()
+    one = found["properties"]["device"]
+    found["properties"]["device"] = {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]}
+    return with_units(found)

@@ -39,12 +39,24 @@ _WORDS = {"length": length, "time": duration, "angle": angle, "acceleration": ac
 
 def resolved_lines(scene: Scene) -> list[str]:
     """Every value of a scene, defaults included: path = SI value, and in words where that reads better."""
-    return list(_section_lines(scene, ""))
+    lines: list[str] = []
+    for name in type(scene).model_fields:
+        if name == "device" and scene.place is not None:
+            lines += _value_lines(list(scene.devices), None, name)
+        else:
+            dimension, _ = dimension_and_models(*_annotation(scene, name))
+            lines += _value_lines(getattr(scene, name), dimension, name)
+    return lines
+
+
+def _annotation(section: BaseModel, name: str) -> tuple[object, list[object]]:
+    field = type(section).model_fields[name]
+    return field.annotation, field.metadata
 
 
 def _section_lines(section: BaseModel, path: str) -> Iterator[str]:
-    for name, field in type(section).model_fields.items():
-        dimension, _ = dimension_and_models(field.annotation, field.metadata)
+    for name in type(section).model_fields:
+        dimension, _ = dimension_and_models(*_annotation(section, name))
         yield from _value_lines(getattr(section, name), dimension, f"{path}.{name}" if path else name)
 
 

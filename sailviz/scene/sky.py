@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from sailviz.constants import YEAR
 from sailviz.scene.body import CustomBody
-from sailviz.scene.device import ElectricSail, SolarSail
+from sailviz.scene.device import Device, ElectricSail, SolarSail
 from sailviz.scene.light import LightKind
 from sailviz.scene.steering import LocalSteering, OnOffSteering, SunFrameSteering
 from sailviz.sky.bodies import BODIES, SkyBody
@@ -22,7 +22,12 @@ EVEN_PERIOD = YEAR
 
 def is_sail(scene: Scene) -> bool:
     """Whether light or wind pushes the craft."""
-    return isinstance(scene.device, (SolarSail, ElectricSail))
+    return isinstance(scene.device, (SolarSail, ElectricSail))  # of several devices the first sail
+
+
+def has_device(scene: Scene, kind: type[Device]) -> bool:
+    """Whether one of the craft's devices is of a kind."""
+    return any(isinstance(device, kind) for device in scene.devices)
 
 
 def light_kind(scene: Scene) -> LightKind:
@@ -52,7 +57,7 @@ def frame_of(scene: Scene) -> str:
 
 def shades(scene: Scene) -> list[str]:
     """Words of the bodies that may hide the light from a solar sail; "" for a central body of the scene's own."""
-    if not isinstance(scene.device, SolarSail):
+    if not has_device(scene, SolarSail):
         return []
     named = scene.environment.shadow_of
     if named is not None:
@@ -74,7 +79,7 @@ def shadow_kind(scene: Scene) -> str:
 
 def magnetosphere_of(scene: Scene) -> str:
     """ "shue-1998", "sphere" or "none": what keeps the wind from an electric sail."""
-    if not isinstance(scene.device, ElectricSail):
+    if not has_device(scene, ElectricSail):
         return "none"
     said = scene.environment.magnetosphere
     if said is not None:
@@ -95,8 +100,8 @@ def kernel_bodies(scene: Scene) -> list[str]:
 
 def counts_from_light(scene: Scene) -> bool:
     """Whether the steering counts from the light, wherever it is."""
-    steering = scene.steering
-    if isinstance(steering, (SunFrameSteering, OnOffSteering)):
+    steering, beside = scene.steering, (device.steering for device in scene.beside)
+    if any(isinstance(law, (SunFrameSteering, OnOffSteering)) for law in (steering, *beside)):
         return True
     if isinstance(steering, LocalSteering) and steering.minimum_perigee is not None:
         return True

@@ -20,6 +20,7 @@ from sailviz.propulsion.devices import CALLED, THRUSTER
 from sailviz.run.arrays import Attitude, EnsembleStatistics, Event, Run, Setting, Thrust, join
 from sailviz.run.devices import SAILS
 from sailviz.scene.loading import SceneSource, load_scene
+from sailviz.simulation.beside import observed_devices, sum_of, thrust_of
 from sailviz.simulation.environment_columns import axes_of_light, observe, voltages
 from sailviz.simulation.integration import INTEGRATORS, begun
 from sailviz.simulation.metadata import bodies, planets_in_view, setting_of
@@ -217,7 +218,7 @@ def _fill(
     """One block. Switching times are computed along with the rows."""
     run = p.scene.propagation
     moments = np.unique(np.concatenate([times, [time for time, _ in switches]])) if switches else times
-    components = 7 if p.model.device in (THRUSTER, CALLED) else 6
+    components = 7 if p.model.device in (THRUSTER, CALLED) or any(one.burns for one in p.beside) else 6
     out = np.empty((components, len(moments)))
     piece = max(1, min(len(moments), output_rows // 50))  # often enough to show progress and to hear Ctrl-C
     found: list[Event] = []
@@ -274,13 +275,18 @@ def _observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, f
     normal, acceleration, throttle, columns = observe(p, time, states, factor)
     position, velocity = states[:3].T.copy(), states[3:6].T.copy()
     axes = frames.rtn(position, velocity)
+    on = (factor * throttle != 0) & (p.model.device != dynamics.NO_DEVICE)
+    devices: dict[str, Thrust] = {}
+    if p.scene.place is not None:
+        devices = observed_devices(p, time, states, factor, axes)
+        acceleration = acceleration + sum_of(devices, p.scene.device.name)
+        on = on | np.any([each.on for each in devices.values()], axis=0)
     by_light = axes_of_light(p, time, states, normal)
     pitch, cone, clock = frames.pitch_cone_clock(axes if by_light is None else by_light, normal, acceleration)
     turn = frames.quaternion(frames.body_axes(frames.stance(axes, normal), axes[..., 1]))
     stowed = ~np.any(normal, axis=1) if setting.craft.kind in SAILS else np.zeros(len(normal), bool)
     attitude = Attitude(np.where(stowed, np.nan, pitch), cone, np.where(stowed, np.nan, clock), normal, turn)
-    on = (factor * throttle != 0) & (p.model.device != dynamics.NO_DEVICE)
-    thrust = Thrust(acceleration, frames.to_frame(axes, acceleration), np.linalg.norm(acceleration, axis=1), on)
+    thrust = thrust_of(acceleration, axes, on)
     environment = {}
     if len(p.schedule.breaks) > 1 or p.scene.device.active is not None:
         environment["thrust_factor"] = factor
@@ -300,4 +306,5 @@ def _observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, f
         orbital.elements(position, velocity, p.body.mu),
         environment,
         {},
+        devices=devices,
     )

@@ -22,7 +22,7 @@ from sailviz.scene.device import DistanceControl, control_of
 from sailviz.scene.loading import Scene
 from sailviz.simulation.environment import parts_of, surroundings
 from sailviz.simulation.lowered import Flight, LoweredSteering, Place, merged
-from sailviz.simulation.thrust_history import Schedule, schedule
+from sailviz.simulation.thrust_history import Schedule
 from sailviz.steering import attitude
 
 if TYPE_CHECKING:
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from sailviz.simulation.quasi_circular import QuasiCircular
     from sailviz.simulation.start import Design
 from sailviz.simulation.approximations import first_orders, quasi_circular_decay
+from sailviz.simulation.beside import BesideDevice, devices_beside, named_switches, schedules
 from sailviz.simulation.bodies import body_of, epoch_of
 from sailviz.simulation.device import device_of, strength_or_none
 from sailviz.simulation.events import quantities_watched, watched
@@ -58,6 +59,7 @@ class Plan:
     quasi_circular: QuasiCircular | None
     choice: Choice  # of the integrator
     sky: SceneSky | None  # None where only the central body and its own light matter
+    beside: list[BesideDevice]  # what pushes beside the first device
     keep: tuple[object, ...]  # compiled user functions must live as long as the plan
     identity: str
 
@@ -84,8 +86,10 @@ def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
     addresses, keep = _own_functions(steering=steering, force=force)
     if steering is not None:
         steered = LoweredSteering(attitude.USER)
-    when = schedule(scene, steered.table)
-    when = replace(when, switches=tuple(sorted({*when.switches, *steered.switches})))
+    when, times_beside = schedules(scene, steered.table)
+    own_switches = named_switches(scene, steered.switches)
+    when = replace(when, switches=tuple(sorted({*when.switches, *own_switches})))
+    beside = devices_beside(scene, position, velocity, times_beside, sky is not None)
     names, watching = watched(scene, body)
     place = Place(scene, body, epoch_of(scene))
     around = [record.lower(part, place) for part, record in parts_of(scene)]
@@ -100,9 +104,16 @@ def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
         primer_kind=steered.primer_kind,
         interpolation=steered.interpolation,
         table=steered.table,
+        burns=any(one.burns for one in beside),
         quantity=quantities_watched(scene, device.kind),
         **addresses,
-        **merged({"forces": device.forces}, surroundings(scene, body, place.epoch), *around, overhead),
+        **merged(
+            {"forces": device.forces},
+            {"forces": tuple(one.callback for one in beside)},
+            surroundings(scene, body, place.epoch),
+            *around,
+            overhead,
+        ),
     )
 
     def nominal(times: np.ndarray) -> np.ndarray:
@@ -125,8 +136,9 @@ def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
         design,
         first_orders(scene, body, position, velocity, design),
         quasi_circular_decay(scene, position, velocity),
-        _integrator(scene, model, position, velocity, when.breaks),
+        _integrator(scene, model, position, velocity, when.breaks, len(beside)),
         sky,
+        beside,
         keep,
         identity_of(scene, steering=steering, force=force),
     )
@@ -156,11 +168,11 @@ def _controlled(scene: Scene, when: Schedule, nominal: Callable[[np.ndarray], np
 
 
 def _integrator(
-    scene: Scene, model: dynamics.Model, position: np.ndarray, velocity: np.ndarray, breaks: np.ndarray
+    scene: Scene, model: dynamics.Model, position: np.ndarray, velocity: np.ndarray, breaks: np.ndarray, beside: int
 ) -> Choice:
     """Which integrator a scene gets. SceneError where the one asked for cannot do it."""
     run = scene.propagation
-    found = choose(model, position, velocity, run.duration, breaks, run.integrator, run.tolerance)
+    found = choose(model, position, velocity, run.duration, breaks, run.integrator, run.tolerance, beside)
     if not found.possible:
         raise SceneError([Fault("propagation.integrator", f"{found.reason}.")], scene.source)
     return found

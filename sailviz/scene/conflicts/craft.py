@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.devices import CONTROLS
-from sailviz.scene.conflicts.records import device_of, start_of, steering_of
+from sailviz.scene.conflicts.records import device_of, devices_of, start_of, steering_of
 from sailviz.scene.conflicts.starts import STARTS
 from sailviz.scene.conflicts.surroundings import IRRADIANCES, WINDS
 from sailviz.scene.device import SolarSail, control_of
@@ -91,19 +91,22 @@ def has_surface(scene: Scene) -> bool:
 
 def brightness(scene: Scene) -> Faults:
     """How bright the light is matters where it makes an acceleration of area and mass."""
-    if scene.light is None or not scene.light.bright or (isinstance(scene.device, SolarSail) and scene.device.by_area):
+    if scene.light is None or not scene.light.bright:
+        return []
+    if any(isinstance(device, SolarSail) and device.by_area for device in scene.devices):
         return []
     return [("light", "the brightness of the light acts on a solar sail that gives its area and its mass, on no other")]
 
 
 def varying_drive(scene: Scene) -> Faults:
     """Wind, sunlight and control that vary need a craft that feels them, and an end."""
-    found, device = [], device_of(scene)
+    found: Faults = []
+    devices = devices_of(scene)
     wind, light, control = scene.environment.solar_wind, scene.environment.irradiance, control_of(scene.device)
     blows, shines = WINDS[type(wind)], IRRADIANCES[type(light)]
-    if not blows.steady and not device.wind:
+    if not blows.steady and not any(device.wind for device in devices):
         found.append(("environment.solar_wind", "the solar wind acts on an electric sail only"))
-    if not shines.steady and not device.sunlight:
+    if not shines.steady and not any(device.sunlight for device in devices):
         found.append(("environment.irradiance", "irradiance that varies acts on a solar sail only"))
     if control is None:
         return found

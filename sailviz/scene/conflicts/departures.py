@@ -17,7 +17,7 @@ from sailviz.words import duration, length
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
-Segment = tuple[float, float, float, float]  # from s, to s, throttle at either end
+Burn = tuple[float, float, float, float]  # from s, to s, throttle at either end
 LARGEST_RATIO = 300.0  # ln of the largest ratio of masses of a run at constant acceleration: 10^130
 
 
@@ -72,9 +72,9 @@ def _frame(scene: Scene) -> str:
 def propellant(scene: Scene) -> Faults:
     """A thruster does not burn more than there is."""
     device, end = scene.device, scene.propagation.duration
-    if not isinstance(device, Thruster) or device.specific_impulse is None:
-        return []
-    exhaust, burns = STANDARD_GRAVITY * device.specific_impulse, _burns(scene)
+    if not isinstance(device, Thruster) or device.specific_impulse is None or scene.beside:
+        return []  # of several devices all have to be asked: see hybrids
+    exhaust, burns = STANDARD_GRAVITY * device.specific_impulse, burns_of(scene)
     if device.thrust is None:  # the thrust falls with the mass: an exponential, which has no end
         on = _impulse(burns, end)
         if (device.acceleration or 0.0) * on < LARGEST_RATIO * exhaust:
@@ -91,10 +91,10 @@ def propellant(scene: Scene) -> Faults:
     return [("device.specific_impulse", what)]
 
 
-def _burns(scene: Scene) -> list[Segment]:
+def burns_of(scene: Scene) -> list[Burn]:
     """The throttle over the run, piece by piece: straight lines or steps of a table, inside the active times."""
     steering, end = scene.steering, scene.propagation.duration
-    pieces: list[Segment] = [(0.0, end, 1.0, 1.0)]
+    pieces: list[Burn] = [(0.0, end, 1.0, 1.0)]
     if isinstance(steering, TableSteering) and steering.throttle is not None:
         time, throttle = steering.time, steering.throttle
         held = steering.interpolation == "hold"
@@ -103,10 +103,12 @@ def _burns(scene: Scene) -> list[Segment]:
             pieces.append((time[i], time[i + 1], throttle[i], throttle[i] if held else throttle[i + 1]))
         pieces.append((time[-1], max(end, time[-1]), throttle[-1], throttle[-1]))
     windows = [(0.0, end)] if scene.device.active is None else scene.device.active
-    return [cut for piece in pieces for first, last in windows if (cut := _cut(piece, max(first, 0.0), min(last, end)))]
+    return [
+        cut for piece in pieces for first, last in windows if (cut := cut_to(piece, max(first, 0.0), min(last, end)))
+    ]
 
 
-def _cut(piece: Segment, first: float, last: float) -> Segment | None:
+def cut_to(piece: Burn, first: float, last: float) -> Burn | None:
     """The part of a piece inside a window."""
     a, b, low, high = piece
     begin, end = max(a, first), min(b, last)
@@ -116,11 +118,11 @@ def _cut(piece: Segment, first: float, last: float) -> Segment | None:
     return begin, end, low + slope * (begin - a), low + slope * (end - a)
 
 
-def _impulse(burns: list[Segment], until: float) -> float:
+def _impulse(burns: list[Burn], until: float) -> float:
     """The throttle's integral from the start until a time, s at full thrust."""
     total = 0.0
     for piece in burns:
-        if cut := _cut(piece, piece[0], until):
+        if cut := cut_to(piece, piece[0], until):
             begin, end, low, high = cut
             total += 0.5 * (low + high) * (end - begin)
     return total

@@ -139,6 +139,8 @@ def expected_of_ensembles(scene: Scene) -> Faults:
 def expected_moments(scene: Scene) -> Faults:
     """Expectations are of moments that the run can meet, and of a mass that is known."""
     found, happens = [], {item.called for item in scene.event} | COME_WITH_DEVICES
+    if scene.place is not None:
+        happens |= {f"{device.name} {word}" for device in scene.devices for word in ("on", "off")}
     words = [*STATISTICS_OF_ROWS, *sorted(happens)]
     for i, expected in enumerate(scene.expect):
         if expected.quantity.startswith("mass_") and scene.device.mass is None:

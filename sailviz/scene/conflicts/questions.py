@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sailviz.scene.conflicts import craft, departures, limits, low_orbit, moments, named_files
+from sailviz.scene.conflicts import craft, departures, hybrids, limits, low_orbit, moments, named_files
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.approximations import approximations
 from sailviz.scene.conflicts.ensembles import ensembles
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
 QUESTIONS = (
+    hybrids.together,
     under_its_sky,
     craft.direction_of_thrust,
     craft.planar_costates,

@@ -25,6 +25,11 @@ def device_of(scene: Scene) -> DeviceFits[Any]:
     return DEVICES.get(type(scene.device), OTHER_DEVICE)
 
 
+def devices_of(scene: Scene) -> list[DeviceFits[Any]]:
+    """Facts of the kinds of all devices of the craft."""
+    return [DEVICES.get(type(device), OTHER_DEVICE) for device in scene.devices]
+
+
 def steering_of(scene: Scene) -> SteeringFits[Any]:
     """Facts of the scene's kind of steering, or of having none."""
     return NO_STEERING if scene.steering is None else STEERINGS.get(scene.steering.kind, OTHER_STEERING)

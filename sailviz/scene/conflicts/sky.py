@@ -16,6 +16,7 @@ from sailviz.scene.sections import FirstOrderApproximation
 from sailviz.scene.sky import (
     counts_from_light,
     frame_of,
+    has_device,
     is_sail,
     kernel_bodies,
     light_away,
@@ -59,7 +60,7 @@ def bodies_that_shade(scene: Scene) -> Faults:
     named, place, found = scene.environment.shadow_of, "environment.shadow_of", []
     if not named:
         return []
-    if not isinstance(scene.device, SolarSail):
+    if not has_device(scene, SolarSail):
         words = "says what hides the light from a solar sail; a plasma brake feels the Earth's shadow by itself"
         return [(place, words)]
     if len(set(named)) < len(named):
@@ -166,7 +167,7 @@ def guard(scene: Scene) -> Faults:
 def in_the_wind(scene: Scene) -> Faults:
     """A magnetosphere keeps the wind from an electric sail, round a planet that has one."""
     place, around = "environment.magnetosphere", scene.environment
-    if around.magnetosphere is not None and not isinstance(scene.device, ElectricSail):
+    if around.magnetosphere is not None and not has_device(scene, ElectricSail):
         return [(place, "a magnetosphere keeps the wind from an electric sail, from no other")]
     kind = magnetosphere_of(scene)
     if kind == "shue-1998" and scene.body != "earth" and "earth" not in around.gravity_of_bodies:

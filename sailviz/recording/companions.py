@@ -145,7 +145,10 @@ def starts_by_date(runs: Sequence[Run]) -> list[float] | None:
 def shifted(run: Run, start: float, epoch: np.datetime64 | None) -> Run:
     """A run on the clock of another, whose time is `start` at its own 0, with that one's epoch."""
     setting = replace(
-        run.setting, epoch=epoch, gaps=tuple((begin + start, end + start) for begin, end in run.setting.gaps)
+        run.setting,
+        epoch=epoch,
+        gaps=tuple((begin + start, end + start) for begin, end in run.setting.gaps),
+        phases=tuple(replace(one, start=one.start + start, end=one.end + start) for one in run.setting.phases),
     )
     events = tuple(replace(event, time=event.time + start) for event in run.events)
     return replace(run, setting=setting, time=run.time + start, events=events)

@@ -6,6 +6,7 @@
 /thrust       acceleration_m_s2 (inertial, 3), acceleration_rtn_m_s2 (3), magnitude_m_s2, on (bool)
 /elements     semi_major_axis_m, eccentricity, inclination_rad, raan_rad, argument_rad, true_anomaly_rad
 /environment  whatever acted, the unit in each name, (n,) or (n, 3); absent where nothing did
+/phases       number of the phase, 1 for the first; absent in flights without. Their names and spans stand in /scene
 /approximation  NAME_position_m (3) and NAME_error_m of every other answer that was asked for; absent without any
 /ensemble/NAME  of every ensemble, at times of some of the rows: nominal_position_m and mean_position_m (3),
               covariance_m2 (9: radial, along and across the orbit, about the mean); percentiles at `levels`, columns of
@@ -13,6 +14,7 @@
               saturated and histogram, shares. /ensemble/NAME/facts, static: levels, ends of the flights, words
 /events       name, time_s, state (position m, velocity m/s, mass kg: 7), at the first row not before the event
 /scene        static: what the run was made from and how far it got; gaps_s (start, end) of each span without data;
+              phases, names, phases_s (start, end), NaN of one that never came, and phases_words, what held;
               `flights`, the names of all, where several were recorded together
 /flight/NAME  of each flight beside the first of those: the same entities below it, /flight/NAME/state and so on, with
               the numbers of its own rows, on the first one's clock; and, of the first as well, /flight/NAME/scene, with
@@ -79,6 +81,7 @@ def tables(run: Run) -> dict[str, dict[str, np.ndarray]]:
             "true_anomaly_rad": elements.true_anomaly,
         },
         "/environment": dict(run.environment),
+        "/phases": {"number": 1.0 + run.setting.phase_of(run.time)} if run.setting.phases else {},
         "/approximation": {
             key: value
             for name, position in run.approximations.items()
@@ -208,6 +211,10 @@ def scene(
     components = {key: pa.array([value]) for key, value in values.items()}
     if flights:
         components["flights"] = pa.array(list(flights))
+    if setting.phases:
+        components["phases"] = pa.array([phase.name for phase in setting.phases])
+        components["phases_s"] = arrow_column(np.array([(phase.start, phase.end) for phase in setting.phases]))
+        components["phases_words"] = pa.array([phase.words for phase in setting.phases])
     if setting.gaps:
         components["gaps_s"] = arrow_column(np.array(setting.gaps))
     return rr.DynamicArchetype(archetype("/scene"), components=components)

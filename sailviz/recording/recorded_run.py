@@ -16,7 +16,7 @@ from sailviz.recording.drawing.landmarks import LARGER
 from sailviz.recording.drawing.samples import unit_of
 from sailviz.recording.reader import Recording
 from sailviz.run import resample
-from sailviz.run.arrays import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust
+from sailviz.run.arrays import Attitude, Body, Craft, Event, Phase, Reference, Run, Setting, Thrust
 
 LABELS = {
     "solar-sail": "Solar sail",
@@ -84,7 +84,16 @@ def setting_of(recording: Recording, time: np.ndarray) -> Setting:
         accuracy=recording.accuracy,
         identity=recording.identity,
         gaps=tuple((float(start), float(end)) for start, end in recording.gaps),
+        phases=phases_of(facts),
     )
+
+
+def phases_of(facts: Mapping[str, np.ndarray]) -> tuple[Phase, ...]:
+    """The phases of a flight, by /scene."""
+    names = np.ravel(facts.get("phases", []))
+    spans = np.array(facts.get("phases_s", []), float).reshape(-1, 2).tolist()
+    words = np.ravel(facts.get("phases_words", []))
+    return tuple(Phase(str(n), start, end, str(w)) for n, (start, end), w in zip(names, spans, words, strict=True))
 
 
 def craft_of(facts: Mapping[str, np.ndarray]) -> Craft:

@@ -44,6 +44,21 @@ class Reference:
 
 
 @dataclass(frozen=True)
+class Phase:
+    """What held from one event to the next. start, end s; NaN both where the flight never came to it."""
+
+    name: str
+    start: float
+    end: float
+    words: str = ""  # what held, e.g. "locally optimal, inclination"
+
+    @property
+    def reached(self) -> bool:
+        """Whether the flight came to it."""
+        return not np.isnan(self.start)
+
+
+@dataclass(frozen=True)
 class Shell:
     """A polar map of something round the central body, in the plane of the orbit at the start, e.g. plasma density.
 
@@ -134,6 +149,13 @@ class Setting:
     shells: tuple[Shell, ...] = ()
     ensembles: tuple[EnsembleStatistics, ...] = ()
     gaps: tuple[tuple[float, float], ...] = ()  # s, (start, end) of spans without data
+    phases: tuple[Phase, ...] = ()  # of a flight in phases, in their order
+
+    def phase_of(self, time: np.ndarray) -> np.ndarray:
+        """Number in `phases` (n,) int64 of the phase at times (n,) s; a phase begins with the row at its start."""
+        starts = np.array([phase.start for phase in self.phases if phase.reached])
+        found: np.ndarray = np.maximum(np.searchsorted(starts, time, side="right") - 1, 0)
+        return found
 
 
 @dataclass(frozen=True)

@@ -54,7 +54,7 @@ def at(
     s = (times - grid[left]) / h
     exact = np.where(s >= 1, left + 1, left)
     known = (s == 0) | (s >= 1)
-    if values.dtype == bool or values.dtype.kind not in "f":
+    if values.dtype == bool or values.dtype.kind not in "f" or name == "number":  # which phase it is
         return values[exact]
     shape = (-1,) + (1,) * (values.ndim - 1)
     s, h = s.reshape(shape), h.reshape(shape)

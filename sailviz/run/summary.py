@@ -31,6 +31,9 @@ def html(run: Run) -> str:
         parts.append(" · ".join(f"{escape(name)} <b>{escape(value)}</b>" for name, value in setting.parameters))
     body = "".join(f'<div style="margin: 0 0 4px">{part}</div>' for part in parts)
     tables = [table(("", "first row", "last row"), ends(run))] if len(run) else []
+    if setting.phases:
+        spans = [(p.name, duration(p.start) if p.reached else "never", p.words) for p in setting.phases]
+        tables.append(table(("phase", "from", ""), spans))
     if run.events:
         shown = [(event.name, duration(event.time)) for event in run.events[:MOST_EVENTS]]
         if len(run.events) > MOST_EVENTS:

@@ -75,6 +75,8 @@ def faults_of(errors: ValidationError, converted: Conversion, model: type[BaseMo
         last = str(error["loc"][-1])
         if error["type"] == "literal_error" and last.startswith("literal[") and isinstance(error["input"], dict):
             continue  # a table where a word was also allowed: what is wrong with the table is said elsewhere
+        if error["type"] == "string_type" and isinstance(error["input"], dict) and _else_wrong(errors, error):
+            continue  # likewise
         path, written = _place(error, converted)
         if error["type"] == "missing":
             dimension = quantities.get(last)
@@ -88,6 +90,15 @@ def faults_of(errors: ValidationError, converted: Conversion, model: type[BaseMo
         Fault(path, " Or: ".join([s for s in sentences if not s.startswith("must be a table")] or sentences))
         for path, sentences in grouped.items()
     ]
+
+
+def _else_wrong(errors: ValidationError, error: ErrorDetails) -> bool:
+    """Whether something else than a word is wrong at the place of an error, or within it."""
+    if error["loc"][-1] != "str":  # of a field that takes text alone
+        return False
+    place = error["loc"][:-1]
+    others = [other["loc"] for other in errors.errors(include_url=False) if other["type"] != "literal_error"]
+    return any(loc != error["loc"] and loc[: len(place)] == place for loc in others)
 
 
 def _quantities(model: type[BaseModel], seen: dict[str, str] | None = None) -> dict[str, str]:
@@ -179,9 +190,14 @@ def _lines(text: str) -> dict[str, int]:
             table = f"{many[1]}[{index}]"
             found[table] = number
         elif header := re.match(r"\s*\[\s*([\w.-]+)\s*\]", line):
-            first, dot, rest = header[1].partition(".")
-            table = f"{first}[{counts[first] - 1}].{rest}" if dot and first in counts else header[1]
+            table = _within(header[1], counts)
             found[table] = number
         elif key := re.match(r"\s*([\w.-]+)\s*=", line):
             found.setdefault(f"{table}.{key[1]}" if table else key[1], number)
     return found
+
+
+def _within(header: str, counts: dict[str, int]) -> str:
+    """The place of a table that a header names: [phase.steering] after a third [[phase]] is phase[2].steering."""
+    first, dot, rest = header.partition(".")
+    return f"{first}[{counts[first] - 1}]{dot}{rest}" if dot and first in counts else header

@@ -32,6 +32,7 @@ from sailviz.scene.events import Watched
 from sailviz.scene.faults import faults_of, locate
 from sailviz.scene.light import Light
 from sailviz.scene.overrides import overridden, place_of
+from sailviz.scene.phases import Phase
 from sailviz.scene.sections import Approximation, Chaos, Ensemble, Expectation, Limits, Propagation, Recording
 from sailviz.scene.sky import shadow_kind
 from sailviz.scene.start import Start
@@ -71,6 +72,7 @@ class Scene(Section):
     light: Light | None = None
     propagation: Propagation
     event: list[Watched] = []
+    phase: Annotated[list[Phase], Field(max_length=1000)] = []
     approximation: list[Approximation] = []
     ensemble: list[Ensemble] = []
     chaos: list[Chaos] = []
@@ -134,6 +136,8 @@ class Scene(Section):
             for key in UNSAID[name]:
                 if table.get(key, "") is None:
                     del table[key]
+        if not self.phase:
+            del values["phase"]
         values["environment"]["shadow"] = shadow_kind(self)
         if self._place is not None:
             values["device"] = [*beside[: self._place], values["device"], *beside[self._place :]]

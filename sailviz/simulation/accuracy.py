@@ -42,16 +42,17 @@ def measured(p: Plan) -> Measured | None:
         return None
     mu, r = p.body.mu, float(np.linalg.norm(p.position))
     axis = 1 / (2 / r - float(p.velocity @ p.velocity) / mu)
-    span = run.duration if axis <= 0 else min(run.duration, TURNS * 2 * np.pi * np.sqrt(axis**3 / mu))
+    longest_span = p.limit - p.begin
+    span = longest_span if axis <= 0 else min(longest_span, TURNS * 2 * np.pi * np.sqrt(axis**3 / mu))
     kept = p.model.tables.copy() if p.schedule.law is not None else None
     longest = run.largest_step or np.inf
-    times = np.linspace(0.0, span, ROWS + 1)
+    times = np.linspace(p.begin, p.begin + span, ROWS + 1)
     coarse, accepted, rejected, reached = _flown(p, times, run.tolerance, longest, 1.0, MOST_STEPS)
-    if coarse.shape[1] < ROWS / 4 and reached > 0.0:  # over what so many steps do reach
-        times = np.linspace(0.0, reached, ROWS + 1)
+    if coarse.shape[1] < ROWS / 4 and reached > p.begin:  # over what so many steps do reach
+        times = np.linspace(p.begin, reached, ROWS + 1)
         coarse, accepted, rejected, _ = _flown(p, times, run.tolerance, longest, 1.0, MOST_STEPS)
     if accepted:  # where cells of tables decide on the steps, and no tolerance
-        longest = 0.5 * min(longest, float(times[coarse.shape[1] - 1]) / accepted)
+        longest = 0.5 * min(longest, float(times[coarse.shape[1] - 1] - p.begin) / accepted)
     fine, _, _, _ = _flown(p, times[: coarse.shape[1]], finer, longest, 2.0, 6 * (accepted + rejected))
     if kept is not None:
         p.model.tables[:] = kept  # where a voltage controller notes what it does
@@ -69,7 +70,7 @@ def _flown(
     the flight ends, or so many steps have been tried."""
     method, state = INTEGRATORS[p.choice.integrator], begun(p, finer)
     model = p.model._replace(parameters=p.model.parameters.copy())
-    out, end = np.empty((6, len(times))), p.scene.propagation.duration
+    out, end = np.empty((6, len(times))), p.limit
     given = (p.schedule.breaks, p.schedule.factors.copy(), p.watch, times, out, end, tolerance, longest)
     patience, status = Patience(most_steps), stepping.EVENTS_FULL
     while status == stepping.EVENTS_FULL:
@@ -79,8 +80,8 @@ def _flown(
     return out[:3, : stepping.rows_done(state)], *stepping.statistics(state), stepping.time(state)
 
 
-def accuracy_in_words(p: Plan, measure: bool) -> str:
-    """How the numbers of a run are made, and how far off they are. measure : whether to find that out."""
+def how_in_words(p: Plan) -> str:
+    """How the numbers of a plan's flight are made."""
     tolerance = p.scene.propagation.tolerance
     if p.choice.integrator == GAUSS_JACKSON:
         how = (
@@ -99,6 +100,12 @@ def accuracy_in_words(p: Plan, measure: bool) -> str:
         )
     if p.choice.reason != ASKED:
         how = f"{how} Chosen because {p.choice.reason}."
+    return how
+
+
+def accuracy_in_words(p: Plan, measure: bool) -> str:
+    """How the numbers of a run are made, and how far off they are. measure : whether to find that out."""
+    how = how_in_words(p)
     if not measure:
         return how
     found = measured(p)
@@ -107,6 +114,18 @@ def accuracy_in_words(p: Plan, measure: bool) -> str:
     whole = found.until >= p.scene.propagation.duration * (1 - 1e-12)
     span = "all of the flight" if whole else f"the first {duration(found.until)}"
     return f"{how} Within {rounded_up(found.error)} of the distance of a flight in steps half as long, over {span}."
+
+
+def accuracy_of_phases(legs: list[tuple[str, Plan]], measure: bool) -> str:
+    """The same of a flight in phases: (name, plan) of each, its limit where it ended. Measured in the first."""
+    ways: dict[str, list[str]] = {}
+    for name, p in legs:
+        ways.setdefault(how_in_words(p), []).append(name)
+    first = accuracy_in_words(legs[0][1], measure)
+    if len(ways) == 1:
+        return first
+    others = [f"In {' and '.join(names)}: {how}" for how, names in list(ways.items())[1:]]
+    return " ".join([f"In {' and '.join(next(iter(ways.values())))}: {first}", *others])
 
 
 def rounded_up(error: float) -> str:

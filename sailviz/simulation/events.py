@@ -11,6 +11,7 @@ from sailviz.propagate.callbacks import Callback
 from sailviz.propagate.quantity_callback import INVERSE, MAGNETOPAUSE, QUANTITIES, quantity_callback
 from sailviz.propagate.sky_quantities import sky_quantities
 from sailviz.propulsion.devices import PLASMA_BRAKE
+from sailviz.scene.phases import Phase, Until, end_of, until_of
 from sailviz.scene.quantities import ON_A_CIRCLE
 from sailviz.scene.sky import has_sky, magnetosphere_of
 from sailviz.simulation.device import device_of
@@ -70,8 +71,8 @@ def crossing_row(item: Crossing, body: Body, action: int) -> tuple[int, float, i
     return kind, level, _SENSE[item.sense], action
 
 
-def watched(scene: Scene, body: Body) -> tuple[tuple[str, ...], events.Watch]:
-    """Names and Watch of the scene's events and of those that come with a device."""
+def watched(scene: Scene, body: Body, phase: Phase | None = None) -> tuple[tuple[str, ...], events.Watch]:
+    """Names and Watch of the scene's events, of those that come with a device, and of the one that ends a phase."""
     names, rows = [], []
     for event in scene.event:
         action = events.STOP if event.stop else events.RECORD
@@ -89,13 +90,33 @@ def watched(scene: Scene, body: Body) -> tuple[tuple[str, ...], events.Watch]:
         edge = events.QUANTITY + MAGNETOPAUSE
         names += ["wind on", "wind off"]
         rows += [(edge, 0.0, 1, events.RECORD), (edge, 0.0, -1, events.RECORD)]
+    until = None if phase is None else until_of(phase)
+    if phase is not None and isinstance(until, str):
+        rows.append((*rows[names.index(until)][:3], events.STOP))
+        names.append(end_of(phase.name))
+    elif phase is not None and isinstance(until, Until) and until.duration is None and until.time is None:
+        rows.append(crossing_row(until, body, events.STOP))
+        names.append(end_of(phase.name))
     return tuple(names), events.watch(rows)
 
 
-def quantities_watched(scene: Scene, device: int) -> Callback | None:
-    """What tells the quantities that the scene's events watch; None where they watch none. device : of
-    propulsion.devices."""
+def latest_end(phase: Phase, begin: float, duration: float) -> float:
+    """Time, s, at which a phase that begins at a time ends, or the run, unless an event ends it before."""
+    until = until_of(phase)
+    if not isinstance(until, Until):
+        return duration
+    if until.duration is not None:
+        return min(begin + until.duration, duration)
+    return min(until.time, duration) if until.time is not None and until.time > begin else duration
+
+
+def quantities_watched(scene: Scene, device: int, phase: Phase | None = None) -> Callback | None:
+    """What tells the quantities that the scene's events watch, and the end of a phase; None where they watch none.
+    device : of propulsion.devices."""
     stems = {event.quantity for event in scene.event if event.kind is None and event.quantity}
+    until = None if phase is None else until_of(phase)
+    if isinstance(until, Until) and until.quantity is not None:
+        stems.add(until.quantity)
     if has_sky(scene) and (stems or magnetosphere_of(scene) != "none"):
         return sky_quantities()
     return quantity_callback(stems, device == PLASMA_BRAKE) if stems else None

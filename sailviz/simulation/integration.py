@@ -7,6 +7,7 @@ from typing import Any
 from sailviz.propagate import collocation, dop853, gauss_jackson
 from sailviz.propagate.choice import COLLOCATION, DOP853, GAUSS_JACKSON
 from sailviz.propagate.gauss_jackson_steps import refinement_for
+from sailviz.propagate.stepping import IN_USE
 from sailviz.simulation.plan import Plan
 
 INTEGRATORS = {COLLOCATION: collocation, DOP853: dop853, GAUSS_JACKSON: gauss_jackson}
@@ -14,7 +15,10 @@ INTEGRATORS = {COLLOCATION: collocation, DOP853: dop853, GAUSS_JACKSON: gauss_ja
 
 def begun(p: Plan, finer: float = 1.0) -> Any:
     """An integration at the start of a plan. finer : shortens steps that are equal, beyond what the tolerance asks."""
-    given = (0.0, p.position, p.velocity, p.mass, len(p.names))
+    given = (p.begin, p.position, p.velocity, p.mass, len(p.names))
     if p.choice.integrator == GAUSS_JACKSON:
-        return gauss_jackson.start(*given, refinement=finer * refinement_for(p.scene.propagation.tolerance))
-    return INTEGRATORS[p.choice.integrator].start(*given)
+        state: Any = gauss_jackson.start(*given, refinement=finer * refinement_for(p.scene.propagation.tolerance))
+    else:
+        state = INTEGRATORS[p.choice.integrator].start(*given)
+    state.counter[IN_USE] = int(p.in_use)
+    return state

@@ -67,6 +67,7 @@ class Flight:
     device: LoweredDevice  # before its sky
     sail: Film | str | None  # as design functions take it; None where the device is no sail
     strength: float | None  # its characteristic acceleration, m/s2
+    begin: float = 0.0  # s, when the steering takes over: what it counts in time counts from there
 
 
 @dataclass(frozen=True)

@@ -135,13 +135,14 @@ def _shells(p: Plan) -> tuple[Shell, ...]:
     return (Shell("plasma density", "1/m³", normal, towards, angle, altitude, density),)
 
 
-def planets_in_view(p: Plan) -> dict[str, np.ndarray]:
-    """Name -> orbit (k, 3) m of the planets that a heliocentric run comes near."""
+def planets_in_view(p: Plan, farthest: float | None = None) -> dict[str, np.ndarray]:
+    """Name -> orbit (k, 3) m of the planets that a heliocentric run comes near. farthest : its largest distance from
+    the centre, m, where that is known."""
     if p.body.name != "Sun":
         return {}
     if drawn := drawn_bodies(p.scene):  # the planets of this scene are those whose gravity acts
         return {body.name: body.orbit for body in drawn}
-    reach = 1.15 * _farthest(p)
+    reach = 1.15 * (_farthest(p) if farthest is None else farthest)
     orbits = {name: ephemeris.planet_orbit(name, epoch_of(p.scene)) for name in ephemeris.PLANETS}
     return {name: orbit for name, orbit in orbits.items() if np.linalg.norm(orbit, axis=1).min() <= reach}
 

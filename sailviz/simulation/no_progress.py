@@ -82,7 +82,7 @@ def _next_steps(p: Plan, state: Any, integrator: Any) -> tuple[Array, Array]:
     for _ in range(STEPS):
         one_step.next_piece(1)
         status = integrator.advance(
-            state, p.model, p.schedule.breaks, p.schedule.factors, p.watch, end, out, run.duration, run.tolerance,
+            state, p.model, p.schedule.breaks, p.schedule.factors, p.watch, end, out, p.limit, run.tolerance,
             run.largest_step or np.inf, one_step,
         )  # fmt: skip
         stepping.drain_events(state)

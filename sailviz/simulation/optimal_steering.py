@@ -11,14 +11,14 @@ from sailviz.errors import Fault, SceneError
 from sailviz.steering.optimal import optimal_pitch
 
 
-def primer_table(scene, position, velocity, device, characteristic_acceleration):
-    """Rows (n, 7): time s, primer (3), its rate (3), inertial, from the start to the end of the run; and (time s,
+def primer_table(scene, position, velocity, device, characteristic_acceleration, begin=0.0):
+    """Rows (n, 7): time s, primer (3), its rate (3), inertial, from `begin` s to the end of the run; and (time s,
     "thrust on" | "thrust off") of every switch.
 
-    position m, velocity m/s (3,); device : the sail that the law reckons with, a name or a Film. SceneError where the
-    costates lead nowhere.
+    position m, velocity m/s (3,) at `begin`; device : the sail that the law reckons with, a name or a Film. SceneError
+    where the costates lead nowhere.
     """
-    duration, numbers = scene.propagation.duration, np.asarray(scene.steering.costates, dtype=float)
+    duration, numbers = scene.propagation.duration - begin, np.asarray(scene.steering.costates, dtype=float)
     try:
         if len(numbers) == 3:
             start = planar_start(position, velocity, numbers)
@@ -29,15 +29,15 @@ def primer_table(scene, position, velocity, device, characteristic_acceleration)
         found = primer_history(solved)
     except ValueError as error:
         raise SceneError([Fault("steering.costates", f"{error}.")], scene.source) from None
-    return np.column_stack([found.time, found.primer, found.rate]), _switches(found, device)
+    return np.column_stack([begin + found.time, found.primer, found.rate]), _switches(found, device, begin)
 
 
-def _switches(found, device):
+def _switches(found, device, begin):
     """(time s, word) of a flight's switches, from whether it begins with thrust."""
     r, primer = found.position, found.primer[0]
     on = bool(optimal_pitch(np.arctan2(np.linalg.norm(np.cross(r, primer)), r @ primer), device).on)
     words = ("thrust off", "thrust on") if on else ("thrust on", "thrust off")
-    return tuple((float(time), words[i % 2]) for i, time in enumerate(found.switches))
+    return tuple((begin + float(time), words[i % 2]) for i, time in enumerate(found.switches))
 
 
 def planar_start(position, velocity, costates):

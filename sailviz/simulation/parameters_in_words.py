@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sailviz.scene.phases import Until, until_of
 from sailviz.simulation.bodies import body_of, epoch_of
 from sailviz.simulation.device import device_of, radiation_pressure, strength_or_none
 from sailviz.simulation.environment import parts_of
@@ -32,7 +33,20 @@ def parameters_in_words(scene: Scene, design: Design) -> Words:
     place = Place(scene, body_of(scene), epoch_of(scene))
     for part, record in parts_of(scene):
         rows += record.words(part, place)
-    return rows + _expectations(scene)
+    return rows + _phases(scene) + _expectations(scene)
+
+
+def _phases(scene: Scene) -> Words:
+    """What ends each phase."""
+    rows = []
+    for i, phase in enumerate(scene.phase):
+        until = until_of(phase)
+        if isinstance(until, Until):
+            words = f"for {duration(until.duration)}" if until.duration is not None else f"until {until.words}"
+        else:
+            words = f"until {until}" if until else "until the end"
+        rows.append((f"phase {i + 1}", f"{phase.name}, {words}"))
+    return rows
 
 
 def _expectations(scene: Scene) -> Words:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from sailviz.propagate.voltage_callback import R_REF, U_REF, WANTED, voltage_cal
 from sailviz.run.arrays import Body
 from sailviz.scene.device import DistanceControl, control_of
 from sailviz.scene.loading import Scene
+from sailviz.scene.phases import scene_of
 from sailviz.simulation.environment import parts_of, surroundings
 from sailviz.simulation.lowered import Flight, LoweredSteering, Place, merged
 from sailviz.simulation.thrust_history import Schedule
@@ -33,16 +34,27 @@ from sailviz.simulation.approximations import first_orders, quasi_circular_decay
 from sailviz.simulation.beside import BesideDevice, devices_beside, named_switches, schedules
 from sailviz.simulation.bodies import body_of, epoch_of
 from sailviz.simulation.device import device_of, strength_or_none
-from sailviz.simulation.events import quantities_watched, watched
+from sailviz.simulation.events import latest_end, quantities_watched, watched
 from sailviz.simulation.identity import identity_of
 from sailviz.simulation.sky import SceneSky, sky_of, under_sky
 from sailviz.simulation.start import design_of, held_radius, initial_state
 from sailviz.simulation.steering import steering_of
 
 
+class Handover(NamedTuple):
+    """Where a phase takes over."""
+
+    number: int  # of the phase
+    time: float  # s
+    position: np.ndarray  # (3,) m
+    velocity: np.ndarray  # (3,) m/s
+    mass: float  # kg
+    in_use: bool  # whether the device has not been switched off for good
+
+
 @dataclass(frozen=True)
 class Plan:
-    """A scene as the propagator sees it."""
+    """A scene as the propagator sees it; of a scene in phases, one of them."""
 
     scene: Scene
     body: Body
@@ -62,6 +74,9 @@ class Plan:
     beside: list[BesideDevice]  # what pushes beside the first device
     keep: tuple[object, ...]  # compiled user functions must live as long as the plan
     identity: str
+    begin: float  # s
+    limit: float  # s, at which it ends if nothing ends it before
+    in_use: bool  # whether its device is, at the beginning
 
     @property
     def mass_known(self) -> bool:
@@ -69,17 +84,23 @@ class Plan:
         return self.scene.device.mass is not None
 
 
-def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
+def plan(scene: Scene, steering: object = None, force: object = None, taken: Handover | None = None) -> Plan:
     """What a scene means. SceneError if it asks for something infeasible, TypeError for a bad user function.
 
-    steering, force : functions of the user's own, see `simulate`.
+    steering, force : functions of the user's own, see `simulate`. taken : where a later phase takes over; without it a
+    scene in phases means its first.
     """
-    body, design = body_of(scene), design_of(scene)
-    position, velocity = initial_state(scene, body, design)
+    body, design, whole = body_of(scene), design_of(scene), scene
+    position, velocity = initial_state(scene, body, design) if taken is None else (taken.position, taken.velocity)
+    begin = 0.0 if taken is None else taken.time
+    phase = scene.phase[0 if taken is None else taken.number] if scene.phase else None
+    limit = scene.propagation.duration
+    if phase is not None:
+        scene, limit = scene_of(scene, phase), latest_end(phase, begin, limit)
     device = device_of(scene).lower(scene.device, scene, design)
     sail, strength = device_of(scene).sail, strength_or_none(scene, design)
     shape = None if sail is None else sail(scene.device)
-    flight = Flight(scene, design, position, velocity, device, shape, strength)
+    flight = Flight(scene, design, position, velocity, device, shape, strength, begin)
     steered = steering_of(scene.steering).lower(scene.steering, flight)
     sky = sky_of(scene, body, epoch_of(scene))
     device, steered, overhead = under_sky(sky, device, steered)
@@ -90,7 +111,9 @@ def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
     own_switches = named_switches(scene, steered.switches)
     when = replace(when, switches=tuple(sorted({*when.switches, *own_switches})))
     beside = devices_beside(scene, position, velocity, times_beside, sky is not None)
-    names, watching = watched(scene, body)
+    if phase is not None:
+        when = replace(when, factors=when.factors * phase.device.level)
+    names, watching = watched(scene, body, phase)
     place = Place(scene, body, epoch_of(scene))
     around = [record.lower(part, place) for part, record in parts_of(scene)]
     parts: dict[str, Any] = dict(
@@ -105,7 +128,7 @@ def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
         interpolation=steered.interpolation,
         table=steered.table,
         burns=any(one.burns for one in beside),
-        quantity=quantities_watched(scene, device.kind),
+        quantity=quantities_watched(scene, device.kind, phase),
         **addresses,
         **merged(
             {"forces": device.forces},
@@ -127,7 +150,7 @@ def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
         body,
         position,
         velocity,
-        scene.device.mass or 1.0,
+        taken.mass if taken is not None else scene.device.mass or 1.0,
         model,
         steered.table,
         when,
@@ -136,11 +159,14 @@ def plan(scene: Scene, steering: object = None, force: object = None) -> Plan:
         design,
         first_orders(scene, body, position, velocity, design),
         quasi_circular_decay(scene, position, velocity),
-        _integrator(scene, model, position, velocity, when.breaks, len(beside)),
+        _integrator(scene, model, position, velocity, when.breaks - begin, limit - begin, len(beside)),
         sky,
         beside,
         keep,
-        identity_of(scene, steering=steering, force=force),
+        identity_of(whole, steering=steering, force=force),
+        begin,
+        limit,
+        taken is None or taken.in_use,
     )
 
 
@@ -168,11 +194,17 @@ def _controlled(scene: Scene, when: Schedule, nominal: Callable[[np.ndarray], np
 
 
 def _integrator(
-    scene: Scene, model: dynamics.Model, position: np.ndarray, velocity: np.ndarray, breaks: np.ndarray, beside: int
+    scene: Scene,
+    model: dynamics.Model,
+    position: np.ndarray,
+    velocity: np.ndarray,
+    breaks: np.ndarray,
+    duration: float,
+    beside: int,
 ) -> Choice:
     """Which integrator a scene gets. SceneError where the one asked for cannot do it."""
     run = scene.propagation
-    found = choose(model, position, velocity, run.duration, breaks, run.integrator, run.tolerance, beside)
+    found = choose(model, position, velocity, duration, breaks, run.integrator, run.tolerance, beside)
     if not found.possible:
         raise SceneError([Fault("propagation.integrator", f"{found.reason}.")], scene.source)
     return found

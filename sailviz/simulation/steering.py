@@ -133,17 +133,19 @@ def _inertial(steering: InertialSteering, flight: Flight) -> LoweredSteering:
 
 
 def _table(steering: TableSteering, flight: Flight) -> LoweredSteering:
-    rows = attitude.table(steering.time, steering.pitch, steering.clock, steering.throttle, steering.interpolation)
+    time = np.asarray(steering.time, dtype=float) + flight.begin
+    rows = attitude.table(time, steering.pitch, steering.clock, steering.throttle, steering.interpolation)
     kind = attitude.TABLE_ORBITAL if steering.frame == "orbital" else attitude.TABLE_MERIDIAN
     interpolation = attitude.INTERPOLATIONS[steering.interpolation]
-    return LoweredSteering(kind, table=rows, interpolation=interpolation, switches=_throttled(steering))
+    return LoweredSteering(kind, table=rows, interpolation=interpolation, switches=_throttled(steering, flight.begin))
 
 
-def _throttled(steering: TableSteering) -> Switches:
+def _throttled(steering: TableSteering, begin: float) -> Switches:
     """(time s, word) of every row at which a table's throttle leaves 0 or comes to it."""
     on = np.array(steering.throttle or [1.0]) > 0
     rows = np.nonzero(on[1:] != on[:-1])[0] + 1
-    return tuple((steering.time[i], "thrust on" if on[i] else "thrust off") for i in rows if steering.time[i] > 0)
+    words = ("thrust off", "thrust on")
+    return tuple((begin + steering.time[i], words[int(on[i])]) for i in rows if steering.time[i] > 0)
 
 
 # ---------------------------------------------------------------- towards a primer
@@ -158,7 +160,9 @@ def _optimal(steering: OptimalSteering, flight: Flight) -> LoweredSteering:
     from sailviz.simulation.optimal_steering import primer_table
 
     sail_of_law = steering.reckons_with or flight.sail
-    rows, switches = primer_table(flight.scene, flight.position, flight.velocity, sail_of_law, flight.strength)
+    rows, switches = primer_table(
+        flight.scene, flight.position, flight.velocity, sail_of_law, flight.strength, flight.begin
+    )
     # the times of another sail's switches are not quite those of this flight
     switches = switches if steering.reckons_with is None else ()
     lowered = LoweredSteering(attitude.PRIMER, table=rows, interpolation=attitude.CUBIC, switches=switches)

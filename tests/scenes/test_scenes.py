@@ -14,6 +14,7 @@ from independent.thrust_history import schedule
 
 import sailviz
 from sailviz.checks.expectations import check
+from sailviz.scene.phases import scene_of
 from sailviz.shipped import shipped_scenes
 
 SCENES = sorted(shipped_scenes())
@@ -27,6 +28,15 @@ def test_scene_fulfils_its_expectations(shipped_run, name):
     assert all(verdict.passed for verdict in verdicts), "\n".join(map(str, verdicts))
 
 
+def first_phase(scene):
+    """The scene that holds in the first of its phases, where it has any: later ones are for its expectations to say."""
+    if not scene.phase:
+        return scene
+    one = scene_of(scene, scene.phase[0])
+    off = {"active": [[1e12, 2e12]]} if scene.phase[0].device.level == 0 else {}
+    return one.model_copy(update={"device": one.device.model_copy(update=off), "phase": []})
+
+
 @pytest.mark.parametrize("name", SCENES)
 def test_scene_agrees_with_scipy(shipped_run, name):
     """Within 1e-8 of the distance over twenty revolutions or 2 % of the run, whichever is shorter, and one at least.
@@ -35,6 +45,7 @@ def test_scene_agrees_with_scipy(shipped_run, name):
     slowly, two revolutions. How far this holds beyond is for test_accuracy to say.
     """
     scene, run = shipped_run(name)
+    scene = first_phase(scene)
     mu = body(scene)[0]
     r, v = run.position[0], run.velocity[0]
     a = 1 / (2 / np.linalg.norm(r) - v @ v / mu)
@@ -47,6 +58,7 @@ def test_scene_agrees_with_scipy(shipped_run, name):
         scene = scene.with_values({"propagation": own})
         run = sailviz.simulate(scene)
     jumps = schedule(scene)[0]
+    last = min([last, *(phase.end for phase in run.setting.phases[:1])])
     rows = run.time <= min([last, *jumps[MOST_JUMPS : MOST_JUMPS + 1]])
     assert rows.sum() > 5
     position = integrate(scene, np.concatenate([r, v, [scene.device.mass or 1.0]]), run.time[rows])

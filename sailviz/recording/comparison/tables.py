@@ -30,7 +30,7 @@ from sailviz.run.arrays import Run
 
 Source = Recording | Run | FilePath  # what can be compared and exported
 
-TRUTH = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/approximation")
+TRUTH = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/phases", "/approximation")
 FLIGHT = "/flight/"  # above the entities of flights that were recorded together
 APART = (*TRUTH, "/events", "/scene", "/about")  # not part of the picture
 FACTS: tuple[str, ...] = ("title", "family", "body", "body_mu_m3_s2", "craft_kind", "rows", "complete", "ended")

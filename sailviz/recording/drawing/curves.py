@@ -17,6 +17,7 @@ from sailviz.recording import timelines
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.craft import CraftDrawing
 from sailviz.recording.drawing.log import Color, Index, Picture
+from sailviz.recording.drawing.phases import reached, rows_at_switches, words_and_colors
 from sailviz.recording.drawing.phrases import amount, push_unit
 from sailviz.recording.drawing.plot_column import FLAT, SHOWN_FROM, PlotView, corner, merged, nice_range, score
 from sailviz.recording.drawing.plots import RARE, Plot, plots_of
@@ -317,6 +318,7 @@ class Lanes:
         self._edges = [GapEdges(start, end) for start, end in first.setting.gaps]
         self._states: dict[str, list[str]] = {name: [] for name in self._names}
         self._rows: dict[str, list[tuple[int, float]]] = {name: [] for name in self._names}  # number and time of each
+        self._switches: list[tuple[int, float]] = []  # number and time of the rows with which phases begin
 
     def add(self, run: Run) -> None:
         """A block of a run, all rows."""
@@ -327,6 +329,8 @@ class Lanes:
             self._add(lane, run, np.where(far, "unknown", states) if lane == "sunlit" else states)
         for edges in self._edges:
             edges.add(run)
+        begun = rows_at_switches(run.setting, run.time)
+        self._switches += zip((run.first + begun).tolist(), run.time[begun].tolist(), strict=True)
         self._time = float(run.time[-1])
 
     def _add(self, lane: str, run: Run, states: np.ndarray) -> None:
@@ -339,7 +343,7 @@ class Lanes:
 
     def write(self, picture: Picture, setting: Setting) -> list[str]:
         """Write the lanes that change, but not so often that nothing is read -> their paths."""
-        shown = []
+        shown = self._write_phases(picture, setting)
         for lane, known in self._states.items():
             states, rows = known, self._rows[lane]
             changes = sum(state != "unknown" for state in states) - 1
@@ -363,6 +367,18 @@ class Lanes:
                 picture.log_columns(lane_path(lane), index, rr.StateChange.columns(state=["no data"] * len(within)))
             shown.append(lane_path(lane))
         return shown
+
+    def _write_phases(self, picture: Picture, setting: Setting) -> list[str]:
+        """The lane of a flight's phases, each in its colour."""
+        if not 1 < len(self._switches) <= MOST_CHANGES:
+            return []
+        names = [phase.name for phase in reached(setting)]
+        colors = [color for _, color in words_and_colors(setting)]
+        picture.log_static(lane_path("phase"), rr.StateConfiguration(values=names, labels=names, colors=colors))
+        number, time = zip(*self._switches, strict=True)
+        index = timelines.time_columns(setting, list(number), list(time))
+        picture.log_columns(lane_path("phase"), index, rr.StateChange.columns(state=names[: len(self._switches)]))
+        return [lane_path("phase")]
 
 
 def lane_path(lane: str) -> str:

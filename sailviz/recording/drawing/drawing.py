@@ -30,6 +30,7 @@ from sailviz.recording.drawing.log import Index, Picture
 from sailviz.recording.drawing.low_orbit import log_low_orbit, orbit_words
 from sailviz.recording.drawing.now_line import log_now
 from sailviz.recording.drawing.orbit_plane import shell_words
+from sailviz.recording.drawing.phases import never_words, phase_notes, rows_at_switches
 from sailviz.recording.drawing.plot_column import PlotView
 from sailviz.recording.drawing.row_words import plain_words, sparse_words, stowed_words
 from sailviz.recording.drawing.sail_close_up import log_close_up
@@ -71,7 +72,7 @@ class Drawing:
         """The next rows."""
         block = self._shown(block)
         self._curves.add(block)
-        picked = self._picker.pick(block)
+        picked = np.union1d(self._picker.pick(block), rows_at_switches(self._setting, block.time)).astype(int)
         if len(picked):
             self._rows.append(timelines.take(block, picked))
             self._numbers.append(block.first + picked)
@@ -101,9 +102,10 @@ class Drawing:
             return
         layout, notes, aside = self._draw(story, last)
         steady = self._curves.steady()
-        self.remarks = [plain_words(line) for line in (*gap_words(self._setting), *sparse_words(story))]
+        told = (*never_words(self._setting), *gap_words(self._setting), *sparse_words(story))
+        self.remarks = [plain_words(line) for line in told]
         sparse = [] if story.frame.low and story.frame.sparse else sparse_words(story)  # there the orbit's line says it
-        notes = [*notes, *gap_words(self._setting), *sparse, *stowed_words(story)]
+        notes = [*phase_notes(self._setting), *notes, *gap_words(self._setting), *sparse, *stowed_words(story)]
         text = about(self._setting, notes, steady, aside)
         self._picture.log_static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
         log_now(self._picture, story)

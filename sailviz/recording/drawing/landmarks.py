@@ -16,6 +16,7 @@ from sailviz.constants import AU, MU_SUN
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.log import Color, Picture, f4
 from sailviz.recording.drawing.names import Names
+from sailviz.recording.drawing.phases import at_a_switch, reached, switches
 from sailviz.recording.drawing.phrases import on_day
 from sailviz.recording.drawing.samples import orbits
 from sailviz.recording.drawing.story import Story
@@ -158,11 +159,12 @@ def marked_events(story: Story) -> list[tuple[str, np.ndarray]]:
     """Words and places of what is marked between the start and the end, and of the end in the event's own words: the
     distance of Mars is not Mars."""
     duration, first = story.duration, float(story.time[0])
-    inside = [e for e in story.events if 0.02 * duration < e.time - first < NEAR_END * duration]
-    last = [e for e in story.events if e.time - first >= NEAR_END * duration]
-    found = [
-        (f"{e.name}, {on_day(e.time - first, duration)}", place_of(story, e)) for e in told_once(inside)[:MOST_EVENTS]
-    ]
+    events = [e for e in story.events if not at_a_switch(story.setting, e)]
+    inside = [e for e in events if 0.02 * duration < e.time - first < NEAR_END * duration]
+    last = [e for e in events if e.time - first >= NEAR_END * duration]
+    named = [(e.name, e) for e in told_once(inside)[:MOST_EVENTS]]
+    named = sorted([*named, *switches(story.setting, story.events)], key=lambda pair: pair[1].time)
+    found = [(f"{words}, {on_day(e.time - first, duration)}", place_of(story, e)) for words, e in named]
     found.append((f"{end_words(story, last)}, {on_day(duration, duration)}", story.position[-1]))
     return found
 
@@ -207,7 +209,9 @@ def log_marks(picture: Picture, story: Story, eye: np.ndarray, names: Names) -> 
     """Dots and names at the start, at the end and at one or two events between; a ring has neither start nor end."""
     if story.ring or np.linalg.norm(story.position - story.position[0], axis=1).max() < 1e-2 * story.reach:
         return
-    marks = [("start", story.position[0]), *marked_events(story)]
+    phases = reached(story.setting)
+    begins = f"start: {phases[0].name}" if phases else "start"
+    marks = [(begins, story.position[0]), *marked_events(story)]
     if story.setting.ensembles:
         marks = marks[:1]
     elif np.linalg.norm(story.position[-1] - story.position[0]) < MEET * story.reach:

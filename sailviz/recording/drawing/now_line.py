@@ -8,6 +8,7 @@ import numpy as np
 import rerun as rr
 
 from sailviz.recording.drawing.log import Index, Picture
+from sailviz.recording.drawing.phases import names_in_rows
 from sailviz.recording.drawing.phrases import digits, moments, on_day, push_words
 from sailviz.recording.drawing.story import GROUND, Story
 from sailviz.run import gaps as spans
@@ -32,6 +33,8 @@ def now_texts(story: Story) -> list[str]:
             parts += [speed_words(story, 1)]
             parts += [push_words(story.push)] if story.craft.pushes else []
             parts += [angle_words(story)] if story.craft.flow_word else []
+    if story.setting.phases:
+        parts.insert(0, names_in_rows(story.setting, story.time))
     when = moments(story.time, story.setting.epoch)
     return [BETWEEN.join(row) for row in zip(when, *parts, strict=True)]
 

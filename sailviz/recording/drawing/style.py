@@ -72,6 +72,7 @@ FLIGHTS = {  # of flights in one picture, in their order; apart from each other 
     "violet": [190, 160, 255],
     "orange": [255, 176, 66],
 }
+PHASES = {word: FLIGHTS[word] for word in ("cyan", "yellow", "green", "violet", "pink")}  # of a flight, in their order
 TRAIL_RECENT = FLIGHTS["cyan"]
 TRAIL_PAST = [86, 160, 200]
 TRAIL_FUTURE = [44, 70, 96]

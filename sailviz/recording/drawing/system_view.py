@@ -62,7 +62,7 @@ def log_system(
     log_references(picture, story, found)
     log_craft(picture, story, size, names)
     log_approximations(picture, story, names)
-    spans = log_trail(picture, story) | log_flights(picture, flights, size, names)
+    spans = log_trail(picture, story, alone=not flights) | log_flights(picture, flights, size, names)
     if fence is not None:
         log_fence(picture, story, fence)
         for part, span in (("past", SO_FAR), ("future", TO_COME)):

@@ -9,6 +9,7 @@ import numpy as np
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.layout import SO_FAR, TO_COME, Span
 from sailviz.recording.drawing.log import Color, Picture
+from sailviz.recording.drawing.phases import rows_at_switches, words_and_colors
 from sailviz.recording.drawing.samples import orbits, smooth_lines
 from sailviz.recording.drawing.story import Story
 
@@ -28,10 +29,10 @@ def trail_colors(color: Color) -> dict[str, Color]:
 
 
 def log_trail(
-    picture: Picture, story: Story, top: str = "/world", colors: dict[str, Color] = OF_THE_FIRST
+    picture: Picture, story: Story, top: str = "/world", colors: dict[str, Color] = OF_THE_FIRST, alone: bool = True
 ) -> dict[str, Span]:
     """Write trail or orbit under `top` -> which part of the run each part shows. They do not overlap: lines on one
-    another tear."""
+    another tear. alone : no other flight is drawn, and phases have colours of their own."""
     if story.frame.sparse:
         picture.log_strip_style(f"{top}/orbit", colors["recent"], 0.8 * style.WIDTH["recent"])
         picture.log_strips(f"{top}/orbit", story.index, orbits(story.samples.run, story.frame))
@@ -39,10 +40,11 @@ def log_trail(
     parts = [part for part in colors if not (part == "future" and story.ring)]
     ends, pieces = pieces_of(story)
     index = story.samples.index_of(ends)
+    phases = words_and_colors(story.setting) if alone else []
     for part in parts:
         path = f"{top}/trail/{part}"
-        picture.log_strip_style(path, colors[part], style.WIDTH[part])
-        picture.log_broken_strips(path, index, pieces)
+        picture.log_strip_style(path, None if phases else colors[part], style.WIDTH[part])
+        picture.log_broken_strips(path, index, pieces, colors_of_phases(story, ends, part) if phases else None)
     back = -RING_PAST * story.duration / story.turns if story.ring else None
     spans: dict[str, Span] = {
         f"{top}/trail/past": (back, -story.tail),
@@ -52,6 +54,13 @@ def log_trail(
     return {path: span for path, span in spans.items() if path.rsplit("/", 1)[-1] in parts}
 
 
+def colors_of_phases(story: Story, ends: np.ndarray, part: str) -> np.ndarray:
+    """(p,) 0xRRGGBBAA of pieces that end at rows (p,): of the phase in which each begins."""
+    known = [trail_colors(color)[part] for _, color in words_and_colors(story.setting)]
+    begins = np.concatenate([[0], ends[:-1]])
+    return np.array([style.rgba(known[k]) for k in story.setting.phase_of(story.time[begins])], np.uint32)
+
+
 def pieces_of(story: Story) -> tuple[np.ndarray, list[list[np.ndarray]]]:
     """Rows (p,) at which pieces end, and the lines (k, 3) of each: through all of its rows, broken where there is no
     data, and where nothing leads from row to row the next one's orbit of the moment."""
@@ -59,7 +68,10 @@ def pieces_of(story: Story) -> tuple[np.ndarray, list[list[np.ndarray]]]:
     line = smooth_lines(samples.run.time, samples.position, samples.velocity, smooth)
     last = len(samples) - 1
     starts = np.arange(0, max(last, 1), STRIP)
-    ends = np.minimum(starts + STRIP, last)
+    if story.setting.phases:
+        switched = rows_at_switches(story.setting, story.time)
+        starts = np.union1d(starts, switched[switched < max(last, 1)])
+    ends = np.append(starts[1:], last)
     broken = set(story.breaks.tolist())
     return ends, [drawn(story, line, broken, a, b) for a, b in zip(starts.tolist(), ends.tolist(), strict=True)]
 

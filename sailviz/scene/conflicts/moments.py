@@ -13,6 +13,7 @@ from sailviz.scene.conflicts.craft import has_surface
 from sailviz.scene.conflicts.ensembles import placed_ensembles
 from sailviz.scene.conflicts.records import device_of, ionosphere_of
 from sailviz.scene.device import NoDevice
+from sailviz.scene.phases import end_of
 from sailviz.scene.quantities import MEANS, PLACES, spellings
 from sailviz.scene.sections import STATISTICS_OF_ROWS
 from sailviz.scene.sky import has_sky, kernel_bodies, light_away, shades
@@ -141,6 +142,7 @@ def expected_moments(scene: Scene) -> Faults:
     found, happens = [], {item.called for item in scene.event} | COME_WITH_DEVICES
     if scene.place is not None:
         happens |= {f"{device.name} {word}" for device in scene.devices for word in ("on", "off")}
+    happens |= {end_of(phase.name) for phase in scene.phase[:-1]}
     words = [*STATISTICS_OF_ROWS, *sorted(happens)]
     for i, expected in enumerate(scene.expect):
         if expected.quantity.startswith("mass_") and scene.device.mass is None:

@@ -8,6 +8,7 @@ from sailviz.scene.conflicts import craft, departures, hybrids, limits, low_orbi
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.approximations import approximations
 from sailviz.scene.conflicts.ensembles import ensembles
+from sailviz.scene.conflicts.phases import asked_of_each, phases
 from sailviz.scene.conflicts.sky import under_its_sky
 
 if TYPE_CHECKING:
@@ -53,6 +54,19 @@ QUESTIONS = (
 )
 
 
+OF_LATER_PHASES = (  # what no start decides
+    under_its_sky,
+    craft.direction_of_thrust,
+    craft.steepest_pitch,
+    low_orbit.tether,
+    low_orbit.density_of_plasma,
+    limits.steps,
+)
+
+
 def conflicts(scene: Scene) -> Faults:
     """(place, sentence) of everything that fits its own section but not the others."""
+    if scene.phase:
+        found = phases(scene)
+        return found + [fault for fault in asked_of_each(scene, QUESTIONS, OF_LATER_PHASES) if fault not in found]
     return [fault for question in QUESTIONS for fault in question(scene)]

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 
+from . import phases
 from .facts import AU, DAY, PLANETS, planet_place
 from .measure import hue, same_place
 from .seen import poses, shown, spots
@@ -42,13 +43,19 @@ def mark_name(f, entity, number):
     same_place(place[:2], dot[:2], size=1 + np.abs(dot).max())
     assert 0 < place[2] - dot[2] < 0.4 * max(f.truth.reach, np.abs(dot).max())
     text = text.removesuffix(": where it began")
-    if text == "start":
+    flown = phases.names(f)
+    assert text.startswith("start") == (text == (f"start: {flown[0]}" if flown else "start"))
+    if text.startswith("start"):
         same_place(dot, f.truth.place[0], f.truth.length)
         return
     name, word, day = re.fullmatch(r"(.*), (day|hour) ([\d.]+)", text).groups()
     duration = f.truth.time[-1] - f.truth.time[0]
     when = float(day) * {"day": DAY, "hour": 3600.0}[word]
     known = {event.name: event.time - f.truth.time[0] for event in f.truth.recording.events}
+    if name in flown:  # of which this is the beginning
+        (event,) = (e for e in f.truth.recording.events if e.name == f"end of {flown[flown.index(name) - 1]}")
+        same_place(dot, event.state[:3], f.truth.length)
+        known = {name: event.time - f.truth.time[0]}
     if name in known:
         assert (
             abs(when - known[name]) <= 0.51 * (DAY if word == "day" else 3600.0)

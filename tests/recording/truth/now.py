@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 
+from . import phases
 from .facts import AU, DAY
 
 PUSHES = {"mm/s²": 1e-3, "µm/s²": 1e-6, "nm/s²": 1e-9}
@@ -41,6 +42,7 @@ def line(f, entity):
     assert steps[-1] == f.truth.steps[-1]
     for step, (text,) in zip(steps, lines, strict=True):
         assert text.startswith("### ")
+        assert not phases.names(f) or any(f"   {name}   " in text for name in phases.names(f)), "no phase is told"
         assert len(text) < 160
         for words in re.split(r"\s*·\s*", text.removeprefix("### ")):
             found = [(check, match) for pattern, check in PARTS.items() if (match := pattern.fullmatch(words))]
@@ -73,6 +75,11 @@ def count(f, row, word, now, total):
     size = {"Day": DAY, "Hour": 3600.0}[word]
     told(now, (f.truth.time[row] - f.truth.time[0]) / size)
     told(total, (f.truth.time[-1] - f.truth.time[0]) / size)
+
+
+@part(r"(spiral in|crank|watch the poles)")  # of the flights that are looked at
+def phase(f, row, name):
+    assert name == phases.names(f)[phases.of_rows(f)[row]]
 
 
 @part(r"([\d.]+) au from the Sun")

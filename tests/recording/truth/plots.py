@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 
+from . import phases
 from .facts import AU, DAY, planet_place
 from .measure import hue, same_number
 from .now import heights
@@ -334,6 +335,7 @@ def about(f, entity):
     if "the **turquoise** arrow is the primer" in text:
         assert "/sail/primer" in f.picture.entities
     rows_told(f, text)
+    phases.told(f, text)
     steady(f, text)
     if f.truth.round_planet and "/world/tail" in f.picture.entities:
         orbit_colors(f, text)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from . import phases
 from .facts import planet_ellipse, unit
 from .measure import hue, on_ring, same_angle, same_direction, same_place
 from .seen import poses, shown, some, spots, strips
@@ -101,8 +102,11 @@ def trail(f, entity):
                 between_rows(f, np.concatenate([line, 0.5 * (line[1:] + line[:-1])]), first, last)
         done = step
     assert done == f.truth.steps[-1], "the trail ends before the run"
-    word = hue(f.picture.color(entity, "LineStrips3D:colors")[0])
-    assert word in ("cyan", "blue")
+    assert f.picture.moves(entity, "LineStrips3D:colors") == bool(phases.names(f)), "phases are not told apart"
+    if phases.names(f):
+        phases.stretch_colors(f, entity)
+    else:
+        assert hue(f.picture.color(entity, "LineStrips3D:colors")[0]) in ("cyan", "blue")
 
 
 def between_rows(f, points, first, last):

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, partial
 
-from . import arrival, close_up, craft, earth, ensembles, landmarks, low, now, plots, push, system, together
+from . import arrival, close_up, craft, earth, ensembles, landmarks, low, now, phases, plots, push, system, together
 
 INERTIAL = "inertial, carried along the orbit where a run is slowed"
 NEAR = "orbital: radial, transverse, normal; of a tether transverse, normal, up"
@@ -242,6 +242,7 @@ CURVES = (
         Claim(f"/{lane}", "StateChange StateConfiguration", "/thrust on, /environment", "-", "in words", plots.lane)
         for lane in ("push", "light", "force_law_valid", "warm", "stowed")
     ),
+    Claim("/phase", "StateChange StateConfiguration", "/events, /scene", "-", "in words", phases.lane),
     Claim("/now", "TextDocument", "every column", "-", "in words", now_line),
     Claim("/log", "TextLog", "/events", "-", "in words", plots.log),
     Claim("/about", "TextDocument", "/scene", "-", "in words", about),
@@ -292,7 +293,14 @@ BESIDES = tuple(
 )
 TABLE = (*SYSTEM, *EARTH, *LOW, *CRAFTS, *CLOSE_UP, *ENSEMBLES, *TOGETHER, *BESIDES, *CURVES)
 NUMBERS = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/approximation", "/ensemble", "/events")
-NUMBERS = (*NUMBERS, "/scene", "/flight", "/__properties", "/__checksums")  # what is not drawn: the truth itself
+NUMBERS = (
+    *NUMBERS,
+    "/phases",
+    "/scene",
+    "/flight",
+    "/__properties",
+    "/__checksums",
+)  # what is not drawn: the truth itself
 
 
 @cache

@@ -1,0 +1,186 @@
+"""Blocks of rows: the propagator fills them, and each row gets what the recording shows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from sailviz import elements as orbital
+from sailviz import frames
+from sailviz.constants import DAY
+from sailviz.errors import PropagationError, TimeLimitError
+from sailviz.propagate import dynamics, stepping
+from sailviz.propagate.patience import Patience
+from sailviz.propulsion.devices import CALLED, THRUSTER
+from sailviz.run.arrays import Attitude, Event, Run, Setting, Thrust
+from sailviz.run.devices import SAILS
+from sailviz.simulation.beside import observed_devices, sum_of, thrust_of
+from sailviz.simulation.environment_columns import axes_of_light, observe, voltages
+from sailviz.simulation.integration import INTEGRATORS
+from sailviz.simulation.no_progress import too_many, too_short, too_slow
+from sailviz.simulation.plan import Plan
+
+FAILURES: dict[int, Callable[[Plan, Any, Patience], str]] = {
+    stepping.UNDERFLOW: lambda p, state, patience: too_short(p, state),
+    stepping.NOT_FINITE: lambda p, state, patience: "The acceleration is not a finite number",
+    stepping.TOO_MANY: lambda p, state, patience: too_many(p, patience),
+    stepping.NO_PROGRESS: lambda p, state, patience: too_slow(p, state, patience, INTEGRATORS[p.choice.integrator]),
+}
+
+
+def raise_failure(p: Plan, state: Any, status: int, patience: Patience, time_limit: float) -> None:
+    """TimeLimitError where the time allowed is over, PropagationError where the flight cannot go on."""
+    if status == stepping.TIME_IS_UP:
+        reached, wanted = stepping.time(state) / DAY, p.scene.propagation.duration / DAY
+        raise TimeLimitError(
+            f"the time limit of {time_limit:g} s is over: the flight had reached {reached:.4g} of {wanted:.4g} d"
+        )
+    if status in FAILURES:
+        raise PropagationError(FAILURES[status](p, state, patience), stepping.time(state), stepping.state(state))
+
+
+@dataclass(frozen=True)
+class Filled:
+    """Rows that the propagator has filled."""
+
+    times: np.ndarray  # (n,) s
+    states: np.ndarray  # (7, n)
+    events: list[Event]
+    status: int  # of `propagate.stepping`
+
+
+def ending(p: Plan, state: Any, status: int) -> str:
+    """Why a run stopped before its duration; "" if it did not."""
+    if status == stepping.SURFACE:
+        return "impact"
+    return p.names[stepping.stopped_by(state)] if status == stepping.STOPPED else ""
+
+
+def first_end(off_time: float, state: Any, events: list[Event]) -> float:
+    """Time, s, from which the device is off for good: what it was, or that of its last use in these events."""
+    if stepping.in_use(state):
+        return off_time
+    return min([off_time] + [event.time for event in events if event.name == "brake off"])
+
+
+def with_known_mass(p: Plan, events: list[Event]) -> list[Event]:
+    """Events whose state says no mass where the scene gives none: 1 kg flew, so that forces are accelerations."""
+    if p.mass_known:
+        return events
+    return [replace(event, state=np.append(event.state[:6], np.nan)) for event in events]
+
+
+def with_last_state(filled: Filled, state: Any) -> Filled:
+    """The rows with the state at the event that ended the run as the last one."""
+    now = stepping.time(state)
+    if len(filled.times) and filled.times[-1] >= now:
+        return filled
+    end = stepping.state(state)[:, None]
+    return replace(filled, times=np.append(filled.times, now), states=np.hstack([filled.states, end]))
+
+
+def fill(
+    p: Plan,
+    state: Any,
+    times: np.ndarray,
+    switches: list[tuple[float, str]],
+    output_rows: int,
+    progress: Callable[[float], None],
+    patience: Patience,
+) -> Filled:
+    """One block. Switching times are computed along with the rows."""
+    run = p.scene.propagation
+    moments = np.unique(np.concatenate([times, [time for time, _ in switches]])) if switches else times
+    components = 7 if p.model.device in (THRUSTER, CALLED) or any(one.burns for one in p.beside) else 6
+    out = np.empty((components, len(moments)))
+    piece = max(1, min(len(moments), output_rows // 50))  # often enough to show progress and to hear Ctrl-C
+    found: list[Event] = []
+    status, filled = stepping.DONE, 0
+    for first in range(0, len(moments), piece):
+        part = moments[first : first + piece]
+        chunk = np.empty((components, len(part)))
+        while True:
+            status = INTEGRATORS[p.choice.integrator].advance(
+                state,
+                p.model,
+                p.schedule.breaks,
+                p.schedule.factors,
+                p.watch,
+                part,
+                chunk,
+                p.limit,
+                run.tolerance,
+                run.largest_step or np.inf,
+                patience,
+            )
+            found += [
+                Event("impact" if index < 0 else p.names[index], time, y)
+                for index, time, y in stepping.drain_events(state)
+            ]
+            if status == stepping.EVENTS_FULL and patience.time_is_up():
+                status = stepping.TIME_IS_UP
+            if status != stepping.EVENTS_FULL:
+                break
+        done = stepping.rows_done(state)
+        out[:, first : first + done] = chunk[:, :done]
+        filled = first + done
+        progress(stepping.time(state) / run.duration)
+        if status == stepping.DONE and patience.time_is_up() and first + piece < len(moments):
+            status = stepping.TIME_IS_UP
+        if status != stepping.DONE:
+            break
+    moments, out = moments[:filled], out[:, :filled]
+    states = out if components == 7 else np.vstack([out, np.full((1, filled), p.mass)])
+    for time, word in switches:
+        at = np.searchsorted(moments, time)
+        if at < filled:
+            found.append(Event(word, time, states[:, at].copy()))
+    found.sort(key=lambda event: event.time)
+    wanted = np.isin(moments, times)
+    return Filled(moments[wanted], states[:, wanted], found, status)
+
+
+def observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, first: int, off_time: float) -> Run:
+    """Everything that is derived from states row by row. off_time: s, when the device was switched off for good."""
+    interval = np.searchsorted(p.schedule.breaks, time, side="right") - 1
+    factor = np.where(time < off_time, p.schedule.factors[interval], 0.0)
+    states = np.ascontiguousarray(states)
+    normal, acceleration, throttle, columns = observe(p, time, states, factor)
+    position, velocity = states[:3].T.copy(), states[3:6].T.copy()
+    axes = frames.rtn(position, velocity)
+    on = (factor * throttle != 0) & (p.model.device != dynamics.NO_DEVICE)
+    devices: dict[str, Thrust] = {}
+    if p.scene.place is not None:
+        devices = observed_devices(p, time, states, factor, axes)
+        acceleration = acceleration + sum_of(devices, p.scene.device.name)
+        on = on | np.any([each.on for each in devices.values()], axis=0)
+    by_light = axes_of_light(p, time, states, normal)
+    pitch, cone, clock = frames.pitch_cone_clock(axes if by_light is None else by_light, normal, acceleration)
+    turn = frames.quaternion(frames.body_axes(frames.stance(axes, normal), axes[..., 1]))
+    stowed = ~np.any(normal, axis=1) if setting.craft.kind in SAILS else np.zeros(len(normal), bool)
+    attitude = Attitude(np.where(stowed, np.nan, pitch), cone, np.where(stowed, np.nan, clock), normal, turn)
+    thrust = thrust_of(acceleration, axes, on)
+    environment = {}
+    if len(p.schedule.breaks) > 1 or p.scene.device.active is not None or p.scene.phase:
+        environment["thrust_factor"] = factor
+    environment |= {name: values[interval] for name, values in p.schedule.histories.items()}
+    if p.schedule.law is not None:
+        environment["thrust_voltage_V"] = voltages(p.model)[interval]
+    environment |= columns
+    return Run(
+        setting,
+        first,
+        time,
+        position,
+        velocity,
+        states[6].copy() if p.mass_known else np.full(len(time), np.nan),
+        attitude,
+        thrust,
+        orbital.elements(position, velocity, p.body.mu),
+        environment,
+        {},
+        devices=devices,
+    )

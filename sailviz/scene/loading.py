@@ -119,7 +119,13 @@ class Scene(Section):
 
     def alone(self, device: Devices) -> Scene:
         """The scene with one of the devices beside as its only one."""
-        changes = {"device": device, "steering": device.steering, "approximation": [], "ensemble": [], "chaos": []}
+        changes: dict[str, Any] = {
+            "device": device,
+            "steering": device.steering,
+            "approximation": [],
+            "ensemble": [],
+            "chaos": [],
+        }
         copy = self.model_copy(update=changes)
         copy._beside = ()
         return copy

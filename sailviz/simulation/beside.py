@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -42,7 +42,8 @@ class BesideDevice(NamedTuple):
 
 def _felt(scene: Scene, device: Devices) -> Scene:
     """The scene with what a device feels of wind and sunlight that vary."""
-    around, changes = scene.environment, {}
+    around = scene.environment
+    changes: dict[str, Any] = {}
     if not isinstance(device, ElectricSail):
         changes["solar_wind"] = CALM.solar_wind
     if not isinstance(device, SolarSail):
@@ -58,7 +59,7 @@ def schedules(scene: Scene, table: Array | None) -> tuple[Schedule, list[Schedul
     first = schedule(_felt(scene, scene.device), table)
     others = [schedule(_felt(scene.alone(device), device), None) for device in scene.beside]
     breaks = np.unique(np.concatenate([each.breaks for each in (first, *others)]))
-    histories = {}
+    histories: dict[str, np.ndarray] = {}
     for each in (*others, first):
         at = np.searchsorted(each.breaks, breaks, side="right") - 1
         histories |= {name: values[at] for name, values in each.histories.items()}

@@ -150,6 +150,9 @@ class Setting:
     ensembles: tuple[EnsembleStatistics, ...] = ()
     gaps: tuple[tuple[float, float], ...] = ()  # s, (start, end) of spans without data
     phases: tuple[Phase, ...] = ()  # of a flight in phases, in their order
+    magnetopause: np.ndarray | None = (
+        None  # (k, 2) angle from the Sun, rad, and distance, m, within which no wind blows
+    )
 
     def phase_of(self, time: np.ndarray) -> np.ndarray:
         """Number in `phases` (n,) int64 of the phase at times (n,) s; a phase begins with the row at its start."""

@@ -12,6 +12,8 @@ import sailviz
 from sailviz import elements as orbital
 from sailviz import ephemeris
 from sailviz.environment import ionosphere
+from sailviz.environment.magnetosphere import NONE, SHUE
+from sailviz.environment.magnetosphere import Parameters as Magnetosphere
 from sailviz.propagate import stepping
 from sailviz.propagate.patience import Patience
 from sailviz.run.arrays import Reference, Setting, Shell
@@ -60,9 +62,20 @@ def setting_of(p: Plan, planets, rows, ensembles=(), measure=True) -> Setting:
         identity=p.identity,
         play_duration=scene.recording.play_duration,
         plots=tuple(scene.recording.plots),
+        magnetopause=None if p.sky is None else magnetopause(p.model.named.magnetosphere),
         shells=_shells(p),
         ensembles=ensembles,
     )
+
+
+def magnetopause(p: Magnetosphere) -> np.ndarray | None:
+    """(k, 2) angle from the Sun's direction, rad, and distance, m, of the surface round the central body that keeps the
+    wind away; None where there is none."""
+    if p.kind == NONE or p.body >= 0:
+        return None
+    angle = np.radians(np.linspace(0.0, 130.0 if p.kind == SHUE else 180.0, 40))
+    flare = (2.0 / (1.0 + np.cos(angle))) ** p.flare if p.kind == SHUE else np.ones(len(angle))
+    return np.stack([angle, p.radius * flare], 1)
 
 
 def family_of(scene) -> str:

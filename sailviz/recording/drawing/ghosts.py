@@ -14,6 +14,7 @@ from sailviz.shapes.primitives import circle, disc
 
 COUNT, MANY = 12, 14  # up to three turns, and above
 HALF = 0.5  # of the craft's own size
+CLEAR = 1.3  # of their size that two of them keep from one another round a planet, where turns lie close
 APART = 0.4  # of the way between two of them, a wheel's radius or half a film's side at most
 SPOKES = 4
 
@@ -30,6 +31,15 @@ def ghost_rows(story: Story) -> np.ndarray:
     return np.unique(np.searchsorted(way, np.linspace(0, way[-1], count + 2)[1:-1]).clip(0, len(way) - 1))
 
 
+def clear_of_one_another(place: np.ndarray, gap: float) -> list[int]:
+    """Which of places (n, 3) to keep, the last one first, so that none is closer to another than a gap."""
+    kept: list[int] = []
+    for k in range(len(place) - 1, -1, -1):
+        if all(np.linalg.norm(place[k] - place[other]) >= gap for other in kept):
+            kept.append(k)
+    return kept[::-1]
+
+
 def log_ghosts(picture: Picture, story: Story, size: float) -> None:
     """Write /world/ghosts. size : of the craft, view units."""
     rows = ghost_rows(story)
@@ -40,8 +50,11 @@ def log_ghosts(picture: Picture, story: Story, size: float) -> None:
     gaps = np.linalg.norm(np.diff(place, axis=0), axis=1)
     room = float(np.median(gaps)) if len(gaps) else size
     small = min(HALF * size, (APART if story.craft.slanted else 2 * APART) * room)
+    if not story.frame.sun:
+        some = clear_of_one_another(place, CLEAR * small * (2.0 if story.craft.slanted else 1.0))
+        place, axes = place[some], axes[some]
     poses = rr.InstancePoses3D(
-        translations=f4(place), quaternions=f4(quaternion(axes)), scales=f4(np.full((len(rows), 3), small))
+        translations=f4(place), quaternions=f4(quaternion(axes)), scales=f4(np.full((len(place), 3), small))
     )
     if story.craft.facing:
         film = sails.film()

@@ -29,6 +29,7 @@ LARGER = 1.004  # a ring beside the trail: lines on one another tear
 MOST_EVENTS = 2  # named between start and end
 THERE = 0.02  # of S: closer than this is the same place or the same line
 MEET = 0.06  # of S: start and end closer than this have one name
+WAYS_WITHIN = 1.5  # of S: farther away the way of a moon is not drawn
 NEAR_END = 0.97  # of the time from which an event is what the flight ends with
 
 
@@ -42,6 +43,14 @@ class Landmarks:
     nominal: list[str] = field(default_factory=list)
     target: Reference | None = None
     length: float = 1.0
+
+    def ways(self, reach: float) -> dict[str, np.ndarray]:
+        """Ways (n, 3) of the bodies without a ring that stay within what is seen: of a moon."""
+        return {
+            name: place
+            for name, place in self.places.items()
+            if name not in self.rings and np.linalg.norm(place, axis=1).max() < WAYS_WITHIN * reach
+        }
 
     def farthest(self, reach: float) -> list[np.ndarray]:
         """Rings that must be in sight: those that the flight comes near, and the target."""
@@ -113,6 +122,10 @@ def log_planets(picture: Picture, story: Story, found: Landmarks, names: Names) 
     for name, ring in found.rings.items():
         color = style.dim(style.planet_color(name), 0.5)
         picture.log_lines(f"/world/planets/{name}/orbit", [ring], color, style.WIDTH["orbit"])
+    if not story.frame.sun:
+        for name, way in found.ways(story.reach).items():
+            color = style.dim(style.planet_color(name), 0.5)
+            picture.log_lines(f"/world/planets/{name}/way", [way], color, style.WIDTH["orbit"])
     for name, place in found.places.items():
         color = style.planet_color(name)
         dot = rr.Points3D.from_fields(radii=points(style.PLANET_DOTS.get(name, 5.6)), colors=[color])

@@ -21,18 +21,22 @@ from sailviz.shipped import shipped_folder
 NIGHT_EDGES = np.radians(np.linspace(100, 78, 16))  # half-angles of what darkens: together a soft terminator
 NIGHT_RADIUS = 1.0022  # so that it lies on the ground and not in it
 NIGHT_ALPHA, DARKEST = 38 / 255, 0.60  # of each of them, one over the other, so that the ground stays readable
+MERIDIANS, RINGS = 12, 5  # lines of a magnetopause
 HALO = ((1.004, 74), (1.009, 54), (1.015, 38), (1.022, 25), (1.031, 15), (1.042, 8), (1.055, 4))  # radius, alpha
 
 
 class Planet:
     """Writes /world/center, /world/night and /world/season, a frame that turns about the axis with the Sun."""
 
-    def __init__(self, picture: Picture, setting: Setting, day_and_night: bool):
+    def __init__(self, picture: Picture, setting: Setting, day_and_night: bool, named: bool = True):
+        """named : whether the arrow of sunlight has its word on it."""
         self._picture = picture
         log_planet(picture, "/world/center/globe", setting.body.name)
         log_air(picture, "/world/center/air", ball(30, 60))
         if day_and_night:
-            log_night(picture)
+            log_night(picture, named)
+            if setting.magnetopause is not None:
+                log_magnetopause(picture, setting.magnetopause, setting.body.radius)
 
     def add(self, samples: Samples) -> None:
         """Turn the globe about its axis, and the night away from the Sun."""
@@ -71,7 +75,25 @@ def log_air(picture: Picture, path: str, sphere: Trimesh, halo: Iterable[tuple[f
         picture.log_mesh(f"{path}/shell{k}", scaled(sphere, radius), [*style.AIR, alpha], shaded=False, side="back")
 
 
-def log_night(picture: Picture) -> None:
+def log_magnetopause(picture: Picture, sheet: np.ndarray, radius: float) -> None:
+    """The surface inside which the wind does not blow, as a net of lines about the Sun's direction. sheet : (k, 2)
+    angle rad and distance m, radius m of the planet."""
+    angle, distance = sheet.T
+    height, width = -distance / radius * np.cos(angle), distance / radius * np.sin(angle)
+    turn = np.linspace(0, 2 * np.pi, MERIDIANS, endpoint=False)
+    around = np.linspace(0, 2 * np.pi, 73)
+    lines = [np.stack([width * np.cos(a), width * np.sin(a), height], 1) for a in turn]
+    for k in range(len(angle) // RINGS, len(angle), len(angle) // RINGS):
+        ring = [width[k] * np.cos(around), width[k] * np.sin(around), np.full(len(around), height[k])]
+        lines.append(np.stack(ring, 1))
+    color = style.dim(style.WIND, 0.4)
+    picture.log_lines("/world/night/magnetopause", lines, color, style.WIDTH["helper"])
+    picture.log_label(
+        "/world/night/magnetopause/name", "magnetopause", style.dim(style.WIND, 0.8), (0, 0, float(height[0]) * 1.05)
+    )
+
+
+def log_night(picture: Picture, named: bool = True) -> None:
     """Zones over the night side, darker and darker, and the umbra, +z away from the Sun, and an arrow of sunlight."""
     edges = [*NIGHT_EDGES, 0.0]
     for k, (outer, inner) in enumerate(pairwise(edges)):
@@ -83,4 +105,5 @@ def log_night(picture: Picture) -> None:
         "/world/night/sunlight",
         rr.Arrows3D(origins=[[0, 0, -1.32]], vectors=[[0, 0, 0.20]], colors=[style.SUN], radii=points(2.0)),
     )
-    picture.log_label("/world/night/sunlight/name", "sunlight", style.SUN, (0, 0, -1.36))
+    if named:
+        picture.log_label("/world/night/sunlight/name", "sunlight", style.SUN, (0, 0, -1.36))

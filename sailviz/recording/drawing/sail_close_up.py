@@ -1,7 +1,7 @@
-"""The close-up: the craft in the orbital frame, what falls on it, what it throws back, what pushes it, where it flies.
+"""The close-up: the craft in the line of the light, what falls on it, what it throws back, pushes it, where it flies.
 
-/sail has x from the central body, y transverse, z along the orbit's normal; the craft is about ten across. The push is
-7.5 long plus the root of its share of the largest, so that a weak one is still seen.
+/sail has x along the line of the light, which round the Sun is the orbital frame (near.py). The craft is about ten
+across. The push is 7.5 long plus the root of its share of the largest, so that a weak one is still seen.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from sailviz.frames import body_axes, quaternion, unit
+from sailviz.frames import quaternion, unit
 from sailviz.recording.drawing import cameras, style
 from sailviz.recording.drawing.cameras import Camera
 from sailviz.recording.drawing.craft import Glow, log_stowing
@@ -48,16 +48,16 @@ def log_close_up(picture: Picture, story: Story, below: int) -> Space:
     length, names = push_length(story), Names(story, (ASPECT[below] * HIGH[below], HIGH[below]))
     log_arrow(picture, story, "push", style.PUSH, length, style.WIDTH["close push"])
     add_name(names, "push", style.PUSH, beyond(length, eye, 2.6), push_words(story.push), PUSH)
-    velocity = VELOCITY * story.samples.velocity_rtn
+    velocity = VELOCITY * story.near.velocity
     log_arrow(picture, story, "velocity", style.SPEED, velocity, style.WIDTH["close arrow"])
     add_name(names, "velocity", style.SPEED, beyond(velocity, eye, 1.0), "flies this way", ARROW)
-    if story.craft.flow_word and story.frame.sun:
+    if story.craft.flow_word and story.near.by_light:
         log_flow(picture, story, eye, names)
     if story.craft.has_angles and (story.craft.facing or story.craft.slanted):
         log_angle(picture, story, names)
         if story.about("clock"):
             log_clock(picture, story, names)
-    primer = story.samples.primer_rtn
+    primer = story.near.primer
     if primer is not None and story.about("primer"):
         log_arrow(picture, story, "primer", style.PRIMER, PRIMER * primer, style.WIDTH["close arrow"])
         add_name(names, "primer", style.PRIMER, beyond(PRIMER * primer, eye, 1.0), "primer", ARROW)
@@ -72,8 +72,7 @@ def log_close_up(picture: Picture, story: Story, below: int) -> Space:
 def log_body(picture: Picture, story: Story) -> None:
     """The craft in its attitude."""
     samples, craft = story.samples, story.craft
-    axes = body_axes(samples.stance_rtn, np.tile([0.0, 1.0, 0.0], (len(samples), 1)))
-    picture.log_pose("/sail/body", story.index, quaternion=quaternion(axes))
+    picture.log_pose("/sail/body", story.index, quaternion=quaternion(story.near.body))
     craft.log_shape(picture, "/sail/body/shape", True)
     picture.log_scale("/sail/body/shape", craft.close_size)
     log_stowing(picture, "/sail/body/shape", craft, story.index, story.stowed, True)
@@ -84,7 +83,7 @@ def push_length(story: Story) -> np.ndarray:
     """(n, 3) the arrow of the push; nothing where nothing pushes."""
     share = story.push / story.most if story.most > 0 else story.push
     length = np.where(share > 0, SHORT + LONGER * np.sqrt(share), 0.0)
-    return np.asarray(length[:, None] * unit(story.samples.thrust_rtn))
+    return np.asarray(length[:, None] * unit(story.near.thrust))
 
 
 def log_arrow(picture: Picture, story: Story, name: str, color: Color, vectors: np.ndarray, width: float) -> None:
@@ -110,7 +109,7 @@ def beyond(arrows: np.ndarray, eye: np.ndarray, gap: float) -> np.ndarray:
 def log_flow(picture: Picture, story: Story, eye: np.ndarray, names: Names) -> None:
     """Light that ends on the film and leaves it mirrored, or the wind through a wheel. No mirror is perfect: what is
     drawn is the direction, not how much."""
-    film, normal = story.craft.facing, story.samples.normal_rtn
+    film, normal = story.craft.facing, story.near.normal
     hits = np.array(ON_FILM if film else ON_WHEEL)
     steep = np.where(np.abs(normal[:, :1]) < EDGE_ON, EDGE_ON, normal[:, :1])
     depth = -(normal[:, 1:2] * hits[:, 0] + normal[:, 2:] * hits[:, 1]) / steep
@@ -146,7 +145,7 @@ def flow_words(word: str) -> str:
 
 def log_angle(picture: Picture, story: Story, names: Names) -> None:
     """The sail's angle as a fan on the sunward side, between the ray and the normal, with its number."""
-    normal, index, count = story.samples.normal_rtn, story.index, len(story.time)
+    normal, index, count = story.near.normal, story.index, len(story.time)
     picture.log_lines("/sail/radial", [[[-10, 0, 0], [11, 0, 0]]], style.RADIAL, style.WIDTH["helper"])
     picture.log_arrow_style("/sail/normal", style.NORMAL, 0.9)
     picture.log_arrows("/sail/normal", index, -NORMAL * normal)
@@ -168,15 +167,17 @@ def log_angle(picture: Picture, story: Story, names: Names) -> None:
 
 
 def log_clock(picture: Picture, story: Story, names: Names) -> None:
-    """The clock angle: on a circle about the radial line, from the orbit's normal to the sail's."""
+    """The clock angle: on a circle about the line of the light, from where it is zero to the sail's normal."""
     attitude, index, length = story.samples.run.attitude, story.index, CLOCK * ~story.stowed
     pitch, clock = np.nan_to_num(attitude.pitch), np.nan_to_num(attitude.clock)
     axial, radius = length * np.cos(pitch), length * np.sin(pitch)
+    zero = np.arctan2(story.near.normal[:, 1], story.near.normal[:, 2]) - clock  # of the clock, from z towards y
+    zero = np.where(np.abs(np.sin(0.5 * zero)) < 1e-9, 0.0, zero)[:, None]
 
     def on_circle(angle: np.ndarray) -> np.ndarray:
-        """Angles (n, k) from the orbit normal towards the transverse direction -> (n, k, 3)."""
-        x = np.broadcast_to(axial[:, None], angle.shape)
-        return np.stack([x, radius[:, None] * np.sin(angle), radius[:, None] * np.cos(angle)], -1)
+        """Clock angles (n, k) -> (n, k, 3)."""
+        x, turn = np.broadcast_to(axial[:, None], angle.shape), angle + zero
+        return np.stack([x, radius[:, None] * np.sin(turn), radius[:, None] * np.cos(turn)], -1)
 
     full = np.tile(np.linspace(0, 2 * np.pi, ROUND), (len(story.time), 1))
     center = np.stack([axial, 0 * axial, 0 * axial], -1)[:, None]
@@ -198,8 +199,8 @@ def log_clock(picture: Picture, story: Story, names: Names) -> None:
 
 def eye_of(story: Story) -> np.ndarray:
     """From where the lit side, the push and the velocity are seen best."""
-    some, samples = story.moments, story.samples
-    normal, thrust = samples.normal_rtn[some], unit(samples.thrust_rtn[some])
+    some, near = story.moments, story.near
+    normal, thrust = near.normal[some], unit(near.thrust[some])
     pushed = np.where(np.any(thrust, axis=1, keepdims=True), thrust, normal)
     weights = np.gradient(story.share[some]) if len(some) > 1 else np.ones(1)
     return cameras.fixed_eye(
@@ -209,14 +210,14 @@ def eye_of(story: Story) -> np.ndarray:
         story.craft.facing,
         (12.0, 20.0, 28.0, 36.0),
         push=1.8,
-        others=samples.velocity_rtn[some],
+        others=near.velocity[some],
     )
 
 
 def places_in_sight(story: Story, push: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     """What must be seen, (k, 3)."""
     some, size = story.moments, 0.65 * story.craft.close_size
-    axes = body_axes(story.samples.normal_rtn[some], np.tile([0.0, 1.0, 0.0], (len(some), 1)))
+    axes = story.near.body[some]
     corners = [side * size * axes[..., k] for side in (-1, 1) for k in (0, 1)]
     rays = np.array([[-RAY, 2.0, 2.0], [-RAY, -2.0, -2.0]])
     return np.concatenate([*corners, 1.15 * push[some], rays, 1.3 * velocity[some]])

@@ -24,7 +24,7 @@ TURNS = 30.0  # revolutions that are shown of a run whose rows are sparse
 PLANE_TURNS = 6.0  # revolutions round a planet from which a run shows the plane of its orbit
 SMOOTH = 72  # points of a trail per revolution
 CLOSE = 1 / 6  # revolutions between drawn rows in a dense window
-LOW = 2.0  # radii of a planet from its centre within which an orbit is a low one
+LOW, HIGH = 2.0, 5.0  # radii of a planet within which periapsis and apoapsis of a low orbit lie
 STILL = 3e-3  # of the circular speed: a craft that is held in place drifts at less
 
 
@@ -93,12 +93,14 @@ class Frame:
 
 
 def is_low(first: Run) -> bool:
-    """Whether the orbit of the first row comes closer to a planet than LOW radii from its centre."""
+    """Whether the orbit of the first row comes closer to a planet than LOW radii from its centre, and stays within HIGH
+    of them."""
     body, e = first.setting.body, first.elements
     if body.name == "Sun" or body.radius <= 0:
         return False
-    nearest = min(float(e.semi_major_axis[0] * (1 - e.eccentricity[0])), float(np.linalg.norm(first.position[0])))
-    return nearest < LOW * body.radius
+    a, eccentricity, now = float(e.semi_major_axis[0]), float(e.eccentricity[0]), np.linalg.norm(first.position[0])
+    nearest, farthest = min(a * (1 - eccentricity), float(now)), a * (1 + eccentricity) if eccentricity < 1 else np.inf
+    return bool(nearest < LOW * body.radius and farthest < HIGH * body.radius)
 
 
 def unit_of(setting: Setting, distance: float) -> tuple[float, str]:

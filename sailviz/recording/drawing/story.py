@@ -11,6 +11,7 @@ from sailviz.frames import body_axes, from_frame, unit
 from sailviz.recording import timelines
 from sailviz.recording.drawing.craft import CraftDrawing
 from sailviz.recording.drawing.log import Index
+from sailviz.recording.drawing.near import Near, near_of
 from sailviz.recording.drawing.samples import Frame, Samples
 from sailviz.recording.drawing.ways import Ways, ways_of
 from sailviz.run import gaps
@@ -128,6 +129,11 @@ class Story:
     def thrust(self) -> np.ndarray:
         """(n, 3) m/s2, inertial, at the drawn place."""
         return np.asarray(from_frame(self.samples.axes, self.samples.thrust_rtn))
+
+    @cached_property
+    def near(self) -> Near:
+        """What acts on the craft in the frame of the close-up."""
+        return near_of(self.samples, self.craft.facing or self.craft.slanted, self.frame.sun)
 
     @property
     def push(self) -> np.ndarray:

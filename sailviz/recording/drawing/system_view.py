@@ -44,6 +44,8 @@ SWEEP_TURNS = 1.25  # revolutions up to which the eye goes along
 ASPECT = 1005 / 576  # of the main view in a window of 1600 x 900
 SWEPT = 5  # angles of a sweep at which everything must fit
 LADDER = 12  # osculating orbits that show a flight of many turns
+SUNLIT_NAME = 1.36  # radii of a planet from its centre at which "sunlight" stands
+SMALLEST = 0.35  # of its size that a craft keeps near a planet
 EDGES = 0.10  # of the time at either end, whose pictures count more
 FLAT, HIGH = (30.0, 38.0, 42.0), (38.0, 44.0)  # deg, elevations of the eye over flights of few and of many turns
 LIFTED_FILM, LIFTED_WHEEL = (-24.0, -14.0, -4.0, 8.0, 20.0, 26.0), (20.0, 24.0, 28.0)
@@ -95,7 +97,15 @@ def system_words(story: Story) -> list[str]:
 def craft_size(story: Story, several: bool = False) -> float:
     """Side of a film, radius of a wheel, in view units; 0 where there is only a dot."""
     among = style.AMONG_MANY if several or story.setting.ensembles else 1.0
-    return story.craft.size * story.reach * among
+    return story.craft.size * story.reach * among * beside_a_planet(story)
+
+
+def beside_a_planet(story: Story) -> float:
+    """How much smaller a craft is drawn that begins near a planet and leaves it far behind, 0.35 to 1: at its full size
+    it would hide the planet and the turns around it."""
+    if story.frame.sun or story.setting.body.radius <= 0:
+        return 1.0
+    return float(np.clip(2.0 * np.sqrt(story.distance.min() / story.reach), SMALLEST, 1.0))
 
 
 def log_backdrop(picture: Picture, story: Story, names: Names) -> None:
@@ -109,7 +119,10 @@ def log_backdrop(picture: Picture, story: Story, names: Names) -> None:
         below = np.array([0.0, 0.0, -2.1 * style.SUN_RADIUS * story.reach])
         names.add("/world/names/Sun", "Sun", style.SUN, below, SUN)
     elif body.radius > 0:
-        Planet(picture, story.setting, "Sun" in story.samples.run.bodies).add(story.samples)
+        sun = story.samples.run.bodies.get("Sun")
+        Planet(picture, story.setting, sun is not None, named=False).add(story.samples)
+        if sun is not None:
+            names.add("/world/names/sunlight", "sunlight", style.SUN, SUNLIT_NAME * unit(sun), CRAFT)
     else:
         picture.log_static("/world/center", rr.Points3D([[0, 0, 0]], radii=points(7), colors=[style.SUN]))
     if story.frame.sun or body.radius == 0:
@@ -246,6 +259,7 @@ def places_in_sight(story: Story, found: Landmarks, fence: Fence | None, size: f
     """Everything that must fit, (k, 3), in the frame of the eye, which turns by `turn` (n,) rad."""
     position, arrow = story.position, story.arrow()
     still = [position, *found.farthest(story.reach)]
+    still += [way for way in found.ways(story.reach).values() if not story.frame.sun]
     if fence is not None:
         still.append(fence.top)
     still += [

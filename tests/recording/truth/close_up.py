@@ -53,7 +53,7 @@ def angle_fan(f, entity):
 
 def clock_frame(f, entity):
     """Directions of clock angle 0 and 90 deg, and outward: normal to the orbit, transverse, radial."""
-    return (seen(f, entity, f.truth.frame[:, k]) for k in (2, 1, 0))
+    return (seen(f, entity, f.truth.clock_axes[:, k]) for k in range(3))
 
 
 def clock_circle(f, entity):
@@ -177,7 +177,7 @@ def flow_name(f, entity):
 
 
 def radial(f, entity):
-    """A line through the craft, from the central body."""
+    """A line through the craft, from the central body or from the light."""
     (line,) = f.picture.line(entity, 0)
     same_direction(line[1] - line[0], outward(f, entity)[0])
     assert not np.cross(line[0], line[1]).any()

@@ -13,7 +13,7 @@ import trimesh
 from .facts import unit
 from .low import ramp, ramped
 from .measure import hue, same_angle, same_direction, same_place, same_turn
-from .seen import poses, some, spots, texts
+from .seen import poses, shown, some, spots, texts
 from .system import ladder, osculating
 
 ALMANAC = 0.02  # deg: what the Almanac's Sun and sidereal times of different years differ by
@@ -130,6 +130,13 @@ def sunlight_name(f, entity):
     assert f.picture.fixed(entity, "Points3D:labels") == ["sunlight"]
 
 
+def sunlight_word(f, entity):
+    """Says sunlight, on the side of the Sun, while no other name is there."""
+    for row, place in shown(f, entity):
+        same_direction(place, f.truth.sun[row], ALMANAC)
+    assert f.picture.fixed(entity, "Points3D:labels") == ["sunlight"]
+
+
 def plane_turn(f, entity):
     """z is the orbit's normal, x lies in the orbit on the side of the Sun."""
     pose = poses(f, entity)
@@ -206,3 +213,27 @@ def density_range(f) -> tuple[float, float]:
     text = f.picture.fixed("/about", "TextDocument:text")[0]
     low, high = re.search(r"\*\*violet\*\* band is the plasma density: (\S+) to (\S+) 1/m³", text).groups()
     return float(low), float(high)
+
+
+def magnetopause(f, entity):
+    """Where Shue's surface is for 2 nPa and no field across: 10.251873 Earth radii (6371.2 km) towards the Sun,
+    15.427840 beside, 23.217051 at 120 deg, open behind."""
+    for row in some(f, 4):
+        points = np.concatenate(f.picture.line(entity, row)) * f.truth.length / 6_371.2e3
+        distance = np.linalg.norm(points, axis=1)
+        cosine = points @ f.truth.sun[row] / distance
+        same_place(distance, 10.251873 * (2 / (1 + cosine)) ** (0.58 * (1 + 0.024 * np.log(2.0))), size=10.0)
+        for at, wanted in ((0.0, 15.427840), (-0.5, 23.217051)):
+            near = np.abs(cosine - at) < 0.06
+            assert near.any()
+            slope = np.abs(np.log(distance[near] / wanted))
+            assert slope.max() < 0.1
+        assert distance.min() < 10.2519
+
+
+def magnetopause_name(f, entity):
+    """Its word a little before its nose."""
+    assert f.picture.fixed(entity, "Points3D:labels") == ["magnetopause"]
+    place = f.picture.place(entity, "Points3D:positions", 0)[0]
+    same_direction(place, f.truth.sun[0])
+    assert 1.0 < np.linalg.norm(place) * f.truth.length / 6_371.2e3 / 10.251873 < 1.1

@@ -12,6 +12,7 @@ import numpy as np
 
 AU, DAY, CENTURY = 149_597_870_700.0, 86_400.0, 36_525 * 86_400.0
 TURNS = 30.0  # revolutions that are drawn of a slowed run
+TILT = np.radians(23.439)  # of the ecliptic against the equator
 SIDEREAL = 2 * np.pi * 1.00273781191135448 / DAY  # rad/s, rotation of the Earth
 
 # E. M. Standish, Keplerian elements for approximate positions of the major planets (JPL), 1800-2050: a au, e, i, mean
@@ -226,8 +227,40 @@ class Truth:
 
     @cached_property
     def sun(self) -> np.ndarray:
-        """(n, 3) unit vectors from the Earth."""
+        """(n, 3) unit vectors from the Earth; without a date the Sun goes evenly round it from the x axis on."""
+        if self.seconds is None:
+            angle = 2 * np.pi * self.time / (365.25 * DAY)
+            return np.stack([np.cos(angle), np.sin(angle) * np.cos(TILT), np.sin(angle) * np.sin(TILT)], -1)
         return unit(sun_place(self.seconds))
+
+    @property
+    def sailing_round_a_planet(self) -> bool:
+        """Whether the light that pushes the craft is not at the centre."""
+        return self.round_planet and self.kind in ("solar-sail", "electric-sail")
+
+    @cached_property
+    def outward(self) -> np.ndarray:
+        """(n, 3) from where the light is: the Sun, 1 au away, of a sail round a planet, else the centre."""
+        return self.position - AU * self.sun if self.sailing_round_a_planet else self.position
+
+    @cached_property
+    def close_frame(self) -> np.ndarray:
+        """(n, 3, 3) rows: x, y, z of the close-up; round a planet x from the light, z as near to the pole as it can."""
+        if not self.sailing_round_a_planet:
+            return self.frame
+        x = unit(self.outward)
+        y = unit(np.cross([0.0, 0.0, 1.0], x))
+        return np.stack([x, y, np.cross(x, y)], -2)
+
+    @cached_property
+    def clock_axes(self) -> np.ndarray:
+        """(n, 3, 3) rows: the directions of clock angle 0 and 90 deg, and outward. Round a planet the first is as near
+        to the pole of the ecliptic as it can be."""
+        if not self.sailing_round_a_planet:
+            return self.frame[:, ::-1]
+        out = unit(self.outward)
+        east = unit(np.cross([0.0, -np.sin(TILT), np.cos(TILT)], out))
+        return np.stack([np.cross(out, east), east, out], -2)
 
     @cached_property
     def lit(self) -> np.ndarray:

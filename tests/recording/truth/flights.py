@@ -283,6 +283,62 @@ def together_low():
 
 
 SMALL = {"propagation__outputs": 31}
+
+
+def round_a_planet():
+    """A sail high over the Earth, its light from an even Sun, clock angle and all."""
+    return sailviz.simulate(
+        {
+            "title": "Round a planet: the clock angle",
+            "body": "earth",
+            "start": {"kind": "circular", "radius_km": 42164, "inclination_deg": 20},
+            "device": {"kind": "solar-sail", "characteristic_acceleration_mm_s2": 1.0, "film": "jpl-2015"},
+            "steering": {"kind": "sun-frame", "pitch_deg": 30, "clock_deg": 70},
+            "propagation": {"duration_d": 4, "outputs": 61},
+        }
+    )
+
+
+def in_and_out_of_the_wind():
+    """A wheel on an ellipse that leaves the magnetosphere."""
+    return sailviz.simulate(
+        {
+            "title": "Wind on, wind off",
+            "body": "earth",
+            "start": {
+                "kind": "elements",
+                "semi_major_axis_km": 150000,
+                "eccentricity": 0.6,
+                "inclination_deg": 30,
+                "argument_deg": 90,
+                "true_anomaly_deg": 180,
+            },
+            "device": {"kind": "electric-sail", "characteristic_acceleration_mm_s2": 0.3},
+            "steering": {"kind": "sun-facing"},
+            "propagation": {"duration_d": 12, "outputs": 61},
+        }
+    )
+
+
+def to_the_moon():
+    """A ballistic flight past the Moon."""
+    return sailviz.simulate(
+        {
+            "title": "To the Moon",
+            "body": "earth",
+            "epoch": "2026-03-20T00:00:00",
+            "start": {
+                "kind": "cartesian",
+                "position_km": [-265.429056, -5871.099606, -3171.316859],
+                "velocity_km_s": [10.819975519, -0.551974072, 0.116279415],
+            },
+            "device": {"kind": "none"},
+            "environment": {"gravity_of": ["moon", "sun"]},
+            "propagation": {"duration_d": 10, "outputs": 61},
+        }
+    )
+
+
 FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "displaced": scene(
         "displaced/circular",
@@ -325,6 +381,9 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "wind": scene("wind/voltage-limits", **SMALL),
     "held": scene("wind/held-displaced", propagation__outputs=61),
     "light": scene("wind/flickering-sun", **SMALL),
+    "round a planet": round_a_planet,
+    "to the Moon": to_the_moon,
+    "in and out of the wind": in_and_out_of_the_wind,
     "own sail": own_sail,
     "own thruster": own_thruster,
     "own film": own_film,

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from . import phases
-from .facts import AU, DAY, PLANETS, planet_place
+from .facts import AU, DAY, PLANETS, TILT, planet_place
 from .measure import hue, same_place
 from .seen import poses, shown, spots
 from .system import PLANET_HUES
@@ -102,6 +102,9 @@ def planet_body(f, entity, name):
     """Where the planet is, from its mean elements; without a date on its circle at its own pace, where the craft starts
     or where it ends; in its colour."""
     drawn = np.array([spot[0] for spot in spots(f, entity)])
+    if f.truth.round_planet:
+        moon_body(f, drawn, name)
+        return
     assert hue(f.picture.color(entity, "Points3D:colors")[0]) == PLANET_HUES[name]
     if f.truth.seconds is not None:
         same_place(drawn, planet_place(name, f.truth.seconds), f.truth.length)
@@ -119,6 +122,31 @@ def planet_body(f, entity, name):
     assert min(off) < 1e-4
     (about,) = f.picture.fixed("/about", "TextDocument:text")
     assert re.search(rf"\*No date is given: .*\b{name}\b", about)
+
+
+def moon_body(f, drawn, name):
+    """As far from the craft as recorded, at the Moon's distance, going round at its pace, 5 deg from the ecliptic."""
+    assert name == "Moon"
+    place = drawn * f.truth.length
+    off = np.linalg.norm(place - f.truth.position, axis=1) - f.truth.environment["moon_distance_m"]
+    assert np.abs(off).max() < 1e-6 * np.abs(place).max()
+    distance = np.linalg.norm(place, axis=1)
+    assert distance.min() > 356e6
+    assert distance.max() < 407e6
+    turned = np.degrees(np.arccos(place[0] @ place[-1] / distance[0] / distance[-1]))
+    days = (f.truth.time[-1] - f.truth.time[0]) / DAY
+    assert 11.0 * days < turned < 15.5 * days
+    pole = np.array([0.0, -np.sin(TILT), np.cos(TILT)])
+    assert (
+        np.degrees(np.arccos(pole @ np.cross(place[0], place[-1]) / np.linalg.norm(np.cross(place[0], place[-1]))))
+        < 5.5
+    )
+
+
+def moon_way(f, entity, name):
+    """Through the places of its body."""
+    (line,) = f.picture.line(entity, 0)
+    same_place(line, np.array([spot[0] for spot in spots(f, f"/world/planets/{name}/body")]), size=100.0)
 
 
 def planet_name(f, entity, name):

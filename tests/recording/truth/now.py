@@ -92,6 +92,12 @@ def far(f, row, value, power):
     told(value, np.linalg.norm(f.truth.position[row]) / 10.0 ** int(power))
 
 
+@part(r"([\d,]+) km from the centre of (the Earth|Mars)")
+def from_centre(f, row, value, body):
+    told(value, np.linalg.norm(f.truth.position[row]) * 1e-3)
+    assert body.endswith(f.truth.body)
+
+
 @part(r"([\d.]+) (k?m/s)")
 def speed(f, row, value, unit):
     told(value, np.linalg.norm(f.truth.velocity[row]) * {"km/s": 1e-3, "m/s": 1.0}[unit])

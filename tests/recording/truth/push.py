@@ -7,7 +7,7 @@ import numpy as np
 from .facts import unit
 from .measure import hue, same_direction, same_place, same_turn
 from .picture import turn
-from .seen import arrows, home, shown
+from .seen import arrows, home, seen, shown
 
 RAMP = np.array([[74, 56, 140], [176, 60, 140], [255, 96, 72], [255, 176, 84]], float)  # weak to strong
 FOOT = 0.30  # brightness of a wall at the trail
@@ -234,7 +234,7 @@ def close_push(f, entity):
     """From the craft along /thrust, 7.5 long and 4.5 times the root of its share of the largest more."""
     origin, vector = arrows(f, entity)
     same_place(origin, home(f, entity))
-    same_direction(vector, f.truth.rtn(f.truth.thrust))
+    same_direction(vector, seen(f, entity, f.truth.thrust))
     push = strength(f)
     expected = np.where(push > 0, 7.5 + 4.5 * np.sqrt(push / push.max()), 0.0)
     assert np.abs(np.linalg.norm(vector, axis=1) - expected).max() < 1e-4

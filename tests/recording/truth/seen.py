@@ -1,7 +1,8 @@
 """Vectors and frames as each view shows them.
 
-/world is inertial, in units of `length`; the craft may be carried along its orbit. /sail of a sail has x radial,
-y transverse, z normal to the orbit; that of a tether x transverse, y normal, z up.
+/world is inertial, in units of `length`; the craft may be carried along its orbit. /sail of a sail round the Sun has x
+radial, y transverse, z normal to the orbit, round a planet x from the light; that of a tether x transverse, y normal,
+z up.
 """
 
 from __future__ import annotations
@@ -26,8 +27,8 @@ def seen(flight, entity: str, vectors) -> np.ndarray:
     """Inertial vectors (n, 3) as the view of an entity shows their directions."""
     if not near(entity):
         return flight.truth.carried(vectors)
-    rtn = flight.truth.rtn(vectors)
-    return rtn[:, [1, 2, 0]] if hanging(flight) else rtn
+    close = np.einsum("nij,nj->ni", flight.truth.close_frame, vectors)
+    return close[:, [1, 2, 0]] if hanging(flight) else close
 
 
 def fixed(flight, entity: str, vectors) -> np.ndarray:
@@ -57,8 +58,8 @@ def home(flight, entity: str) -> np.ndarray:
 
 
 def outward(flight, entity: str) -> np.ndarray:
-    """(n, 3) the direction from the central body."""
-    return seen(flight, entity, flight.truth.position)
+    """(n, 3) the direction from the central body, or from the light."""
+    return seen(flight, entity, flight.truth.outward)
 
 
 def poses(flight, entity: str, steps=None) -> np.ndarray:

@@ -13,6 +13,7 @@ TARGET = 1.004  # a target is drawn so much large: on the trail it would tear
 STRAYS = 2e-3  # of the distance: what a curve between rows may stray from the orbit of its last row
 PLANET_HUES = {
     "Mercury": "grey",
+    "Moon": "grey",
     "Venus": "yellow",
     "Earth": "blue",
     "Mars": "orange",

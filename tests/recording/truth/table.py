@@ -82,8 +82,12 @@ SYSTEM = (
     Claim("/world/orbit", f"{LINE} {MOVE}", "/state as an orbit", INERTIAL, "1/L", orbit_of),
     Claim("/world/ladder", LINE, "/state as orbits", INERTIAL, "1/L", system.ladder),
     Claim("/world/planets/*/orbit", LINE, "mean elements", INERTIAL, "1/L", system.planet_orbit),
+    Claim("/world/night/magnetopause", LINE, "Shue 1998", INERTIAL, "1/L", earth.magnetopause),
+    Claim("/world/night/magnetopause/name", POINT, "its nose", INERTIAL, "1.05/L", earth.magnetopause_name),
+    Claim("/world/planets/*/way", LINE, "where its body is", INERTIAL, "1/L", landmarks.moon_way),
     Claim("/world/planets/*/body", POINT, "mean elements, or a circle", INERTIAL, "1/L", landmarks.planet_body),
     Claim("/world/names/Sun", POINT, "the Sun's name", INERTIAL, "1", system.sun_name),
+    Claim("/world/names/sunlight", POINT, "the Sun's direction", INERTIAL, "1.36", earth.sunlight_word),
     Claim("/world/names/push", POINT, "the arrow's tip", INERTIAL, "1", push.push_name),
     Claim("/world/names/craft", POINT, "/scene craft_kind", INERTIAL, "1", craft.ballistic_name),
     Claim("/world/names/*", POINT, "mean elements, or a circle", INERTIAL, "1/L", landmarks.planet_name),
@@ -240,7 +244,7 @@ CURVES = (
     Claim("/plots/*/#/*", SWUNG, "as of its plot", "-", "title's unit", of_plot),
     *(
         Claim(f"/{lane}", "StateChange StateConfiguration", "/thrust on, /environment", "-", "in words", plots.lane)
-        for lane in ("push", "light", "force_law_valid", "warm", "stowed")
+        for lane in ("push", "light", "force_law_valid", "warm", "stowed", "in_solar_wind")
     ),
     Claim("/phase", "StateChange StateConfiguration", "/events, /scene", "-", "in words", phases.lane),
     Claim("/now", "TextDocument", "every column", "-", "in words", now_line),

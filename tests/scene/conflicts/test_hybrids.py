@@ -174,3 +174,19 @@ def test_identities_of_scenes_with_one_device_know_nothing_of_lists() -> None:
     one = load_scene("displaced/circular")
     assert one.place is None
     assert "name" not in one.resolved()["device"]
+
+
+@pytest.mark.parametrize(
+    "sail",
+    [
+        {"kind": "solar-sail", "area_m2": 1000},
+        {"kind": "electric-sail", "tethers": 20, "tether_length_km": 10, "voltage_kV": 20},
+    ],
+)
+def test_a_sail_that_would_speed_up_as_propellant_burns_is_refused_and_not_flown_at_its_first_strength(sail) -> None:
+    burning = {"kind": "thruster", "thrust_mN": 60, "specific_impulse_s": 1500, "mass_kg": 400, "steering": OWN}
+    assert any("is not flown: give its characteristic_acceleration" in fault for fault in faults(scene(sail, burning)))
+    massless = {"kind": "thruster", "thrust_mN": 60, "mass_kg": 400, "steering": OWN}
+    load_scene(scene(sail, massless))
+    stated = {"kind": sail["kind"], "characteristic_acceleration_mm_s2": 0.3}
+    load_scene(scene(stated, burning))

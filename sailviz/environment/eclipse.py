@@ -26,6 +26,23 @@ def cylindrical(x, y, z, sx, sy, sz, radius):
 
 
 @inlined
+def lit_of_discs(a, b, c):
+    """Share of a disc of radius a that one of radius b leaves free, their middles c apart; all rad."""
+    if c >= a + b:
+        return 1.0
+    if c <= b - a:
+        return 0.0
+    if c <= a - b:
+        return 1.0 - b * b / (a * a)
+    q = (c * c + a * a - b * b) / (2.0 * c)
+    h = np.sqrt(max(a * a - q * q, 0.0))
+    covered = (
+        a * a * np.arccos(max(-1.0, min(q / a, 1.0))) + b * b * np.arccos(max(-1.0, min((c - q) / b, 1.0))) - c * h
+    )
+    return 1.0 - covered / (np.pi * a * a)
+
+
+@inlined
 def conical(x, y, z, sx, sy, sz, radius):
     """Illuminated share of the Sun's disc, 0 (umbra) to 1, behind a sphere of a radius (m); the Sun is 1 au away.
 
@@ -48,18 +65,7 @@ def conical(x, y, z, sx, sy, sz, radius):
     a = np.arcsin(RADIUS_SUN / np.sqrt(d2))
     b = np.arcsin(min(radius / np.sqrt(r2), 1.0))
     c = np.arccos(max(-1.0, min(-(x * dx + y * dy + z * dz) / np.sqrt(r2 * d2), 1.0)))
-    if c >= a + b:
-        return 1.0
-    if c <= b - a:
-        return 0.0
-    if c <= a - b:
-        return 1.0 - b * b / (a * a)
-    q = (c * c + a * a - b * b) / (2.0 * c)
-    h = np.sqrt(max(a * a - q * q, 0.0))
-    covered = (
-        a * a * np.arccos(max(-1.0, min(q / a, 1.0))) + b * b * np.arccos(max(-1.0, min((c - q) / b, 1.0))) - c * h
-    )
-    return 1.0 - covered / (np.pi * a * a)
+    return lit_of_discs(a, b, c)
 
 
 @inlined

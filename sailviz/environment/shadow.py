@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from sailviz.compiled import called, inlined
+from sailviz.environment.eclipse import lit_of_discs
 
 PENUMBRA, UMBRA, SHARP = range(3)  # edges of a shadow: of the penumbra, of umbra and antumbra, of a cylinder
 
@@ -27,16 +28,7 @@ def lit_share(x, y, z, lx, ly, lz, radius, light_radius):
     b = np.arcsin(min(radius / np.sqrt(r2), 1.0))
     cx, cy, cz = y * dz - z * dy, z * dx - x * dz, x * dy - y * dx
     g = np.arctan2(np.sqrt(cx * cx + cy * cy + cz * cz), along)  # the arc cosine would lose digits where they meet
-    if g >= a + b:
-        return 1.0
-    if g <= b - a:
-        return 0.0
-    if g <= a - b:
-        return 1.0 - b * b / (a * a)
-    q = (g * g + a * a - b * b) / (2.0 * g)
-    h = np.sqrt(max(a * a - q * q, 0.0))
-    covered = a * a * np.arccos(max(-1.0, min(q / a, 1.0))) + b * b * np.arccos(max(-1.0, min((g - q) / b, 1.0)))
-    return 1.0 - (covered - g * h) / (np.pi * a * a)
+    return lit_of_discs(a, b, g)
 
 
 @inlined

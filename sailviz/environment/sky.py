@@ -47,6 +47,7 @@ class Sides(NamedTuple):
     lit: int = 1  # sunlight, of a shadow with a sharp edge
     receding: int = 1  # the craft flies away from the light
     windy: int = 1  # outside the magnetosphere
+    facing: int = 1  # the air meets the sail's back; -1: its front, where drag goes by the attitude
     needed: int = 0  # steps keep to edges whatever the tolerance
 
 

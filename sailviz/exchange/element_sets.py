@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import re
-from datetime import UTC, datetime, timedelta
+from datetime import datetime, timedelta
 from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -283,8 +283,3 @@ def named(sets: list[ElementSet], name: str | None) -> ElementSet:
     if not same:
         raise ValueError(f"there is no element set of this name. {nearest(name, [item.name for item in sets])}")
     return max(same, key=lambda item: item.epoch)
-
-
-def as_utc(date: datetime) -> datetime:
-    """A naive UTC date with its zone, as scenes keep them."""
-    return date.replace(tzinfo=UTC)

@@ -66,7 +66,7 @@ def by_anomaly(
     return SmallBody(name, axis * (1.0 - e), e, inclination, node, argument, day - anomaly / rate / DAY)
 
 
-def read_small_bodies(path: str | Path, name: str | None = None) -> SmallBody:
+def read_small_body(path: str | Path, name: str | None = None) -> SmallBody:
     """One body of a file: the JSON that the Small-Body Database answers, or lines of the Minor Planet Center, of minor
     planets (MPCORB.DAT) or of comets (CometEls.txt).
 

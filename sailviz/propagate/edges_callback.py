@@ -193,6 +193,27 @@ def next_face(t, span, y, p, tables):
 
 
 @inlined
+def next_kink(t, span, y, p, tables):
+    """Time after t, at most span s, of the next kink of what is read from tables: a face of a cell, or a moment between
+    two of which the air or the Sun's level is a straight line in time."""
+    if reads_air(p):
+        span = min(span, atmosphere.next_season(tables, p.places.air, t))
+    if p.solar_level.days > 0:
+        span = min(span, next_day(t, p.solar_level))
+    if reads_air(p) or reads_plasma(p) or is_limited(p):
+        span = next_face(t, span, y, p, tables)
+    return span
+
+
+@inlined
+def arc_ahead(y, number):
+    """The span, s, of a step of at most `number` s along which a Kepler arc holds."""
+    r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
+    v2 = y[3] * y[3] + y[4] * y[4] + y[5] * y[5]
+    return min(number, LONGEST_ARC * np.sqrt(r2 / v2))
+
+
+@inlined
 def next_edge(t, span, y, p):
     """Time after t, at most span s, at which a step has to end for the edge of the shadow."""
     low = LIGHT_AHEAD
@@ -211,15 +232,7 @@ def _ahead(time, state, parameters, own, number, out):
     p = record_at(parameters, PARAMETERS)
     y, tables, found = array_at(state, STATE), array_at(p.places.address, p.places.end), array_at(out, 4)
     jumps = enter(time, y, p, tables)
-    r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
-    v2 = y[3] * y[3] + y[4] * y[4] + y[5] * y[5]
-    span = min(number, LONGEST_ARC * np.sqrt(r2 / v2))
-    if reads_air(p):
-        span = min(span, atmosphere.next_season(tables, p.places.air, time))
-    if p.solar_level.days > 0:
-        span = min(span, next_day(time, p.solar_level))
-    if reads_air(p) or reads_plasma(p) or is_limited(p):
-        span = next_face(time, span, y, p, tables)
+    span = next_kink(time, arc_ahead(y, number), y, p, tables)
     if p.brake.power != p.brake.eclipse_power:
         span = next_edge(time, span, y, p)
     found[0], found[1], found[2], found[3] = span, 1.0 if jumps else 0.0, 0.0, 0.0

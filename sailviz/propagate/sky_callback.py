@@ -12,6 +12,7 @@ from sailviz.environment import atmosphere, magnetosphere, sky
 from sailviz.environment.eclipse import CYLINDER, NO_SHADOW, cylindrical
 from sailviz.environment.shadow import lit_share
 from sailviz.propagate.callbacks import Callback, callback
+from sailviz.propagate.dynamics import direction
 from sailviz.propagate.low_orbit_callback import air_density, surroundings
 from sailviz.propagate.parameters import PARAMETERS, array_at, record_at
 from sailviz.propagate.primer_callback import primer, throttle
@@ -23,9 +24,9 @@ from sailviz.steering.optimal import B1, B3, steer, towards_primer
 from sailviz.steering.primers import PERIAPSIS, locally_optimal_primer
 
 
-@called
-def _share_past(body, x, y, z, p, tables):
-    """Lit share of the light that passes one body of the sky (-1: the central one)."""
+@inlined
+def seen_from(body, x, y, z, p, tables):
+    """A place and the light, m, relative to a body of the sky (-1: the central one), and the radius, m, that shades."""
     at = p.places.sky
     lx, ly, lz = tables[at + sky.LIGHT], tables[at + sky.LIGHT + 1], tables[at + sky.LIGHT + 2]
     radius = p.sky.centre_radius
@@ -34,6 +35,13 @@ def _share_past(body, x, y, z, p, tables):
         radius = tables[row + sky.RADIUS]
         bx, by, bz = tables[row + sky.X], tables[row + sky.X + 1], tables[row + sky.X + 2]
         x, y, z, lx, ly, lz = x - bx, y - by, z - bz, lx - bx, ly - by, lz - bz
+    return x, y, z, lx, ly, lz, radius
+
+
+@called
+def _share_past(body, x, y, z, p, tables):
+    """Lit share of the light that passes one body of the sky (-1: the central one)."""
+    x, y, z, lx, ly, lz, radius = seen_from(body, x, y, z, p, tables)
     if radius == 0.0:
         return 1.0
     if p.sky.shadow == CYLINDER:
@@ -58,13 +66,7 @@ def sunlit_share(x, y, z, p, tables):
 @called
 def outside_magnetosphere(x, y, z, p, tables):
     """Distance, m, from the magnetopause, positive in the wind."""
-    at = p.places.sky
-    lx, ly, lz = tables[at + sky.LIGHT], tables[at + sky.LIGHT + 1], tables[at + sky.LIGHT + 2]
-    body = p.magnetosphere.body
-    if body >= 0:
-        row = at + sky.HEAD + sky.BODY * body
-        bx, by, bz = tables[row + sky.X], tables[row + sky.X + 1], tables[row + sky.X + 2]
-        x, y, z, lx, ly, lz = x - bx, y - by, z - bz, lx - bx, ly - by, lz - bz
+    x, y, z, lx, ly, lz, _ = seen_from(p.magnetosphere.body, x, y, z, p, tables)
     return magnetosphere.outside(x, y, z, lx, ly, lz, p.magnetosphere)
 
 
@@ -193,8 +195,8 @@ def attitude_drag(t, x, yy, z, vx, vy, vz, m, nx, ny, nz, p, tables):
     density = air_density(t, r, latitude, local_time, altitude, f107, p, tables)
     w = p.surface.rotation
     qx, qy, qz = vx + w * yy, vy - w * x, vz
-    speed = np.sqrt(qx * qx + qy * qy + qz * qz)
-    across = abs(nx * qx + ny * qy + nz * qz) / speed
+    across = (nx * qx + ny * qy + nz * qz) / np.sqrt(qx * qx + qy * qy + qz * qz)
+    across = across * p.sides.facing if p.held.active != 0 else abs(across)
     area = p.pushed.drag_area * across + p.pushed.edge_area
     ax, ay, az = atmosphere.air_drag(x, yy, z, vx, vy, vz, w, density * area / m)
     return ax, ay, az, density
@@ -204,7 +206,9 @@ def _drag(time, state, parameters, own, number, out):
     """Acceleration, m/s2, of the air, by the attitude that the law asks for."""
     p = record_at(parameters, PARAMETERS)
     y, tables, a = array_at(state, STATE), array_at(p.places.address, p.places.end), array_at(out, 4)
-    nx, ny, nz, _ = normal(time, y[0], y[1], y[2], y[3], y[4], y[5], p, tables)
+    inverse = 1.0 / np.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
+    ux, uy, uz = y[0] * inverse, y[1] * inverse, y[2] * inverse
+    nx, ny, nz, _, _ = direction(time, y[0], y[1], y[2], y[3], y[4], y[5], y[6], ux, uy, uz, p)
     ax, ay, az, _ = attitude_drag(time, y[0], y[1], y[2], y[3], y[4], y[5], y[6], nx, ny, nz, p, tables)
     a[0], a[1], a[2], a[3] = ax, ay, az, 0.0
 

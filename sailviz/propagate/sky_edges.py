@@ -1,5 +1,5 @@
-"""Where forces under a sky have kinks and jumps: edges of shadows, the magnetopause, and where the craft turns back
-towards the light under a law that is on or off.
+"""Where forces under a sky have kinks and jumps: edges of shadows, the magnetopause, where the craft turns back towards
+the light under a law that is on or off, and where the air changes the side of the sail on which it falls.
 
 A step ends at each of them, so that no shadow is jumped over and no step runs across a kink; where the force jumps, it
 keeps to one side as far as the step goes. When that will be is foreseen along a Kepler arc (`edges_callback.arc`). A
@@ -18,9 +18,10 @@ from sailviz.environment import magnetosphere, sky
 from sailviz.environment.eclipse import CYLINDER, NO_SHADOW
 from sailviz.environment.shadow import PENUMBRA, SHARP, UMBRA, edge_distance
 from sailviz.propagate.callbacks import Callback, callback
-from sailviz.propagate.edges_callback import LONGEST_ARC, arc, enter, is_limited, next_face, reads_air, reads_plasma
+from sailviz.propagate.dynamics import direction
+from sailviz.propagate.edges_callback import arc, arc_ahead, enter, next_kink
 from sailviz.propagate.parameters import PARAMETERS, array_at, record_at
-from sailviz.propagate.sky_callback import outside_magnetosphere
+from sailviz.propagate.sky_callback import outside_magnetosphere, seen_from
 from sailviz.steering import by_light
 
 AHEAD = 0.02  # s after the start of a step at which its side is looked for: more than a foreseen time is wrong
@@ -28,7 +29,19 @@ FOUND = 1e-4  # s to which the time at an edge is found
 LOOKS = 6  # at most along a step for what has no distance
 CLOSEST = 1 / 400  # of a step, by which the approach to a shadow goes on at least
 FASTER = 1.5  # a bound of the relative speed over that at the start of a step
-RECEDING, WIND = 3, 4  # edges beside those of environment.shadow
+EDGE_ON = 1e-9  # of the speed, below which a sail has no side towards the flow
+RECEDING, WIND, FLOW = 3, 4, 5  # edges beside those of environment.shadow
+
+
+@called
+def across_the_flow(t, x, y, z, vx, vy, vz, m, p):
+    """Speed, m/s, at which the air meets the sail's back, raised by EDGE_ON of the whole: a sail that its law keeps
+    edge-on has rounding alone, and no sides."""
+    inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
+    nx, ny, nz, _, _ = direction(t, x, y, z, vx, vy, vz, m, x * inverse, y * inverse, z * inverse, p)
+    w = p.surface.rotation
+    qx, qy, qz = vx + w * y, vy - w * x, vz
+    return nx * qx + ny * qy + nz * qz + EDGE_ON * np.sqrt(qx * qx + qy * qy + qz * qz)
 
 
 @called
@@ -39,19 +52,16 @@ def side(edge, body, t, dt, y, p, tables):
     sky.set_to(t + dt, at, p.sky, tables)
     if edge == WIND:
         return outside_magnetosphere(x, yy, z, p, tables)
-    if edge == RECEDING:
-        ux, uy, uz, _ = sky.from_light(x, yy, z, at, tables)
+    if edge in (RECEDING, FLOW):
         h = 1e-3 * np.sqrt((x * x + yy * yy + z * z) / (y[3] * y[3] + y[4] * y[4] + y[5] * y[5]))
         x1, y1, z1 = arc(dt + h, y)
         x0, y0, z0 = arc(dt - h, y)
-        return ((x1 - x0) * ux + (y1 - y0) * uy + (z1 - z0) * uz) / (2.0 * h)
-    lx, ly, lz = tables[at + sky.LIGHT], tables[at + sky.LIGHT + 1], tables[at + sky.LIGHT + 2]
-    radius = p.sky.centre_radius
-    if body >= 0:
-        row = at + sky.HEAD + sky.BODY * body
-        radius = tables[row + sky.RADIUS]
-        bx, by, bz = tables[row + sky.X], tables[row + sky.X + 1], tables[row + sky.X + 2]
-        x, yy, z, lx, ly, lz = x - bx, yy - by, z - bz, lx - bx, ly - by, lz - bz
+        vx, vy, vz = 0.5 * (x1 - x0) / h, 0.5 * (y1 - y0) / h, 0.5 * (z1 - z0) / h
+        if edge == FLOW:
+            return across_the_flow(t + dt, x, yy, z, vx, vy, vz, y[6], p)
+        ux, uy, uz, _ = sky.from_light(x, yy, z, at, tables)
+        return vx * ux + vy * uy + vz * uz
+    x, yy, z, lx, ly, lz, radius = seen_from(body, x, yy, z, p, tables)
     return edge_distance(edge, x, yy, z, lx, ly, lz, radius, p.sky.light_radius)
 
 
@@ -151,7 +161,7 @@ def next_shadow(t, span, y, p, tables):
 def take_sides(t, y, p, tables):
     """Keep to the sides on which the craft is a moment later. Returns whether one of them has changed."""
     sides = p.sides
-    lit, receding, windy = sides.lit, sides.receding, sides.windy
+    lit, receding, windy, facing = sides.lit, sides.receding, sides.windy, sides.facing
     sides.lit = 1
     if p.sky.shadow == CYLINDER:
         for body in range(-1, p.sky.bodies):
@@ -161,7 +171,10 @@ def take_sides(t, y, p, tables):
         sides.receding = 1 if side(RECEDING, -1, t, AHEAD, y, p, tables) > 0.0 else 0
     if p.magnetosphere.kind != magnetosphere.NONE:
         sides.windy = 1 if side(WIND, -1, t, AHEAD, y, p, tables) > 0.0 else 0
-    return lit != sides.lit or receding != sides.receding or windy != sides.windy
+    if p.pushed.drag_area > 0.0:
+        sides.facing = 1 if side(FLOW, -1, t, AHEAD, y, p, tables) > 0.0 else -1
+    kept = lit == sides.lit and receding == sides.receding and windy == sides.windy
+    return not kept or facing != sides.facing
 
 
 def _ahead(time, state, parameters, own, number, out):
@@ -172,17 +185,15 @@ def _ahead(time, state, parameters, own, number, out):
     fresh = p.held.active == 0  # at the start of a run nothing has been held
     jumps = enter(time, y, p, tables)
     jumps = take_sides(time, y, p, tables) or jumps or fresh
-    r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
-    v2 = y[3] * y[3] + y[4] * y[4] + y[5] * y[5]
-    span = min(number, LONGEST_ARC * np.sqrt(r2 / v2))
-    if reads_air(p) or reads_plasma(p) or is_limited(p):
-        span = next_face(time, span, y, p, tables)
+    span = next_kink(time, arc_ahead(y, number), y, p, tables)
     if p.sky.shadow != NO_SHADOW:
         span = next_shadow(time, span, y, p, tables)
     if p.by_light.law == by_light.ON_OFF:
         span = by_looks(RECEDING, -1, time, span, y, p, tables)
     if p.magnetosphere.kind != magnetosphere.NONE:
         span = by_looks(WIND, -1, time, span, y, p, tables)
+    if p.pushed.drag_area > 0.0:
+        span = by_looks(FLOW, -1, time, span, y, p, tables)
     found[0], found[1], found[2], found[3] = span, 1.0 if jumps else 0.0, 0.0, 0.0
 
 

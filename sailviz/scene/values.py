@@ -66,7 +66,7 @@ QUARTER_TURN = Field(ge=-1.5707963267948968, le=1.5707963267948968)
 class Section(BaseModel):
     """A table of the scene file."""
 
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True, allow_inf_nan=False, defer_build=True)
 
 
 def one_of(section: Section, *names: str) -> None:

@@ -181,6 +181,7 @@ def under_sky(
         return device, steered, {}
     scene = found.scene
     away, shading = light_away(scene), found.parameters.shadow != NO_SHADOW
+    dragged = scene.device.drag_area == "attitude"
     blown = found.magnetosphere.kind != magnetosphere.NONE
     law, steered = _by_light(found, steered, device.kind)
     pushed = Pushed()
@@ -190,13 +191,13 @@ def under_sky(
         device = device._replace(kind=CALLED, callback=sky_thrust())
     if scene.environment.gravity_of is not None:
         forces.append(sky_gravity())
-    if scene.device.drag_area == "attitude":
+    if dragged:
         assert isinstance(scene.device, SolarSail)
         assert scene.device.area is not None
         k = scene.device.drag_coefficient
         pushed = pushed._replace(drag_area=k * scene.device.area, edge_area=k * (scene.device.edge_area or 0.0))
         forces.append(sky_drag())
-    jumps = shading or blown or law.law == by_light.ON_OFF
+    jumps = shading or blown or dragged or law.law == by_light.ON_OFF
     sides = sky.Sides(needed=int(jumps))
     parts = {
         "sky": found.parameters,

@@ -12,7 +12,7 @@ import pytest
 
 from sailviz import two_body
 from sailviz.constants import AU, MU_SUN
-from sailviz.exchange.small_bodies import SmallBody, by_anomaly, julian_day, read_small_bodies
+from sailviz.exchange.small_bodies import SmallBody, by_anomaly, julian_day, read_small_body
 
 FOREIGN = Path(__file__).parents[1] / "data" / "foreign"
 MU_DE440 = 1.3271244004127942e20  # m3/s2, with which the references were made: 1.8e-10 off the product's
@@ -33,13 +33,13 @@ ASTEROID = (
 @pytest.mark.parametrize("name", ["sbdb_made_up.json", "mpcorb_made_up.dat"])
 @pytest.mark.parametrize(("day", "wanted"), ASTEROID)
 def test_an_asteroid(name, day, wanted):
-    found = _state(read_small_bodies(FOREIGN / name), day)
+    found = _state(read_small_body(FOREIGN / name), day)
     assert np.abs(found[:3] - wanted[:3]).max() < 0.2  # km: the two values of mu
     assert np.abs(found[3:] - wanted[3:]).max() < 1e-8
 
 
 def test_a_hyperbolic_comet():
-    body = read_small_bodies(FOREIGN / "comet_made_up.txt", "made up")
+    body = read_small_body(FOREIGN / "comet_made_up.txt", "made up")
     assert body.name == "C/2027 A1 (Made Up)"
     found = _state(body, 2461400.5)
     wanted = (-255931253.2955, -154978805.1146, 53541544.80272, 7.583910865, 20.075771304, -23.515339672)
@@ -61,7 +61,7 @@ def test_a_nearly_parabolic_orbit_is_told_by_its_perihelion(tmp_path):
     for item in answer["orbit"]["elements"]:
         item["value"] = values.get(item["name"], item["value"])
     (tmp_path / "a.json").write_text(json.dumps(answer))
-    body = read_small_bodies(tmp_path / "a.json")
+    body = read_small_body(tmp_path / "a.json")
     assert (body.perihelion, body.passage) == (1.1 * AU, 2461000.5)
 
 
@@ -90,11 +90,11 @@ def test_many_orbits_are_asked_by_name(tmp_path):
     line = (FOREIGN / "mpcorb_made_up.dat").read_text().splitlines()[-1]
     other = line.replace("(99001) Made Up", "(99002) Other  ").replace("99001", "99002", 1)
     (tmp_path / "a.dat").write_text(line + "\n" + other + "\n")
-    assert read_small_bodies(tmp_path / "a.dat", "other").name == "(99002) Other"
-    assert read_small_bodies(tmp_path / "a.dat", "99001").name == "(99001) Made Up"
+    assert read_small_body(tmp_path / "a.dat", "other").name == "(99002) Other"
+    assert read_small_body(tmp_path / "a.dat", "99001").name == "(99001) Made Up"
     for name, message in ((None, "say the name of one"), ("9900", "2 orbits have 9900"), ("Othr", "Other")):
         with pytest.raises(ValueError, match=message):
-            read_small_bodies(tmp_path / "a.dat", name)
+            read_small_body(tmp_path / "a.dat", name)
 
 
 @pytest.mark.parametrize(
@@ -117,7 +117,7 @@ def test_orbits_that_are_wrong_are_told(tmp_path, name, old, new, message):
     assert old in text
     (tmp_path / name).write_text(text.replace(old, new, 1))
     with pytest.raises(ValueError, match=message):
-        read_small_bodies(tmp_path / name)
+        read_small_body(tmp_path / name)
 
 
 def test_julian_days():

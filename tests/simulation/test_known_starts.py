@@ -175,6 +175,19 @@ def test_a_flight_begins_with_the_planet(planet):
     np.testing.assert_allclose(planned.velocity, (places[2] - places[1]) / 20.0, atol=1e-3)
 
 
+@pytest.mark.parametrize(
+    ("planet", "pulling", "refused"),
+    [("earth", "earth", True), ("earth", "earth-moon", True), ("mars", "mars", True), ("mars", "earth", False)],
+)
+def test_a_flight_does_not_begin_in_the_middle_of_what_pulls(planet, pulling, refused):
+    start, sky = {"kind": "from-planet", "planet": planet}, {"gravity_of": [pulling]}
+    scene = _scene(start, body="sun", epoch="2031-04-01", environment=sky)
+    if refused:
+        assert any(where == "start" or where.startswith("start.distance") for where, _ in _faults(scene))
+        start["distance_km"] = 1e6
+    plan(sailviz.load_scene(scene))
+
+
 def test_c3_is_the_square_of_the_excess_speed():
     still = _at_planet("earth")
     for towards, axis in (

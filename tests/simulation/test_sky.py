@@ -1,4 +1,4 @@
-"""Flights under a sky against published-style rows: end states that two independent codes agree upon, DE421 where said.
+"""Flights under a sky against reference rows: end states that two independent codes agree upon, DE421 where said.
 
 The tolerance of each row is the distance by which those codes differ, or what is left of a float64 flight.
 """

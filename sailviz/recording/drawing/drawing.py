@@ -105,7 +105,13 @@ class Drawing:
         told = (*never_words(self._setting), *gap_words(self._setting), *sparse_words(story))
         self.remarks = [plain_words(line) for line in told]
         sparse = [] if story.frame.low and story.frame.sparse else sparse_words(story)  # there the orbit's line says it
-        notes = [*phase_notes(self._setting), *notes, *gap_words(self._setting), *sparse, *stowed_words(story)]
+        notes = [
+            *phase_notes(self._setting, story.frame.low),
+            *notes,
+            *gap_words(self._setting),
+            *sparse,
+            *stowed_words(story),
+        ]
         text = about(self._setting, notes, steady, aside)
         self._picture.log_static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
         log_now(self._picture, story)

@@ -54,8 +54,9 @@ def at_a_switch(setting: Setting, event: Event) -> bool:
     return event.name in parts and any(event.time == phase.start for phase in reached(setting)[1:])
 
 
-def phase_notes(setting: Setting) -> list[str]:
-    """What the description says: each phase with its colour and when it began; and those that never came."""
+def phase_notes(setting: Setting, low: bool) -> list[str]:
+    """What the description says: each phase with its colour and when it began; and those that never came. low : a low
+    orbit, whose trail is coloured by its altitude: there the lane alone has the phases' colours."""
     if not setting.phases:
         return []
     known, first = reached(setting), setting.phases[0].start
@@ -64,7 +65,7 @@ def phase_notes(setting: Setting) -> list[str]:
         when = "" if phase is known[0] else f" from {on_day(phase.start - first, setting.duration)}"
         held = f" ({phase.words})" if phase.words else ""
         said.append(f"**{color}** {phase.name}{when}{held}")
-    return ["phases: " + ", ".join(said), *never_words(setting)]
+    return [("phases in their lane: " if low else "phases: ") + ", ".join(said), *never_words(setting)]
 
 
 def never_words(setting: Setting) -> list[str]:

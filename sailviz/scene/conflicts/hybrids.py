@@ -30,6 +30,7 @@ STEERS_BESIDE = (
 )
 SOLVED = ("optimal", "smoothed-transfer", "as designed")  # laws made for one device
 OF_THE_CRAFT = ("drag_area", "edge_area")
+OF_ALL_TOGETHER = ("cone", "thrust_acceleration")  # quantities that the first device alone does not make
 PIECES = 32  # of a burn whose throttle changes
 
 
@@ -55,6 +56,10 @@ def together(scene: Scene) -> Faults:
             "which is not flown: give its characteristic_acceleration, which stays"
         )
         found.append(("device", words))
+    for i, event in enumerate(scene.event):
+        for stem in (stem for stem in event.quantities() if stem in OF_ALL_TOGETHER):
+            words = f"{stem.replace('_', ' ')} is that of all devices together, which no event watches"
+            found.append((f"event[{i}].{stem}", words))
     burnt = burnt_out(scene)
     if burnt is not None:
         words = f"all thrusters together burn the whole mass in {duration(burnt)}: shorten the run, or end the thrust"

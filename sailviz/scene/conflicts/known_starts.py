@@ -1,15 +1,15 @@
 """Starts that are looked up in files: what they say is read when a scene is loaded, so that all its faults are told at
-once, and so that a start with a date of its own gives the scene its epoch."""
+once, and so that a start with a date of its own gives the scene its epoch.
+
+What reads the files is imported by the scenes that name some: `check` answers at once.
+"""
 
 from __future__ import annotations
 
-from datetime import date, datetime
+from datetime import UTC, date, datetime
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from sailviz.exchange import element_sets, small_bodies
-from sailviz.exchange.element_sets import FARTHEST, ElementSet
-from sailviz.exchange.small_bodies import SmallBody
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.known_starts import OemStart, PlanetStart, SmallBodyStart, TleStart
 from sailviz.scene.named_files import folder_of, outside, unreadable
@@ -17,6 +17,8 @@ from sailviz.scene.start import CartesianStart
 from sailviz.words import shown
 
 if TYPE_CHECKING:
+    from sailviz.exchange.element_sets import ElementSet
+    from sailviz.exchange.small_bodies import SmallBody
     from sailviz.scene.loading import Scene
 
 DAY = 86_400.0
@@ -29,6 +31,8 @@ def _unreadable(scene: Scene, name: str) -> str:
 
 def element_set_of(scene: Scene, start: TleStart) -> ElementSet:
     """The set that a start means. ValueError, in one sentence, where there is none."""
+    from sailviz.exchange import element_sets
+
     if start.line1 is not None and start.line2 is not None:
         return element_sets.of_lines(start.line1, start.line2)
     assert start.file is not None  # or the section would not have been accepted
@@ -39,10 +43,13 @@ def element_set_of(scene: Scene, start: TleStart) -> ElementSet:
 
 def small_body_of(scene: Scene, start: SmallBodyStart) -> SmallBody:
     """The body that a start means. ValueError, in one sentence, where there is none."""
+    from sailviz.exchange import small_bodies
+    from sailviz.exchange.small_bodies import SmallBody
+
     if start.file is not None:
         if problem := _unreadable(scene, start.file):
             raise ValueError(problem)
-        return small_bodies.read_small_bodies(folder_of(scene) / start.file, start.name)
+        return small_bodies.read_small_body(folder_of(scene) / start.file, start.name)
     e, angles = start.eccentricity or 0.0, (start.inclination or 0.0, start.raan or 0.0, start.argument or 0.0)
     if start.perihelion_date is not None and start.perihelion_distance is not None:
         return SmallBody("", start.perihelion_distance, e, *angles, julian_date(start.perihelion_date))
@@ -67,7 +74,7 @@ def dated(scene: Scene) -> tuple[Scene, Faults]:
         return scene, []
     try:
         if isinstance(start, TleStart):
-            epoch = element_sets.as_utc(element_set_of(scene, start).epoch)
+            epoch = _as_utc(element_set_of(scene, start).epoch)
         elif start.at is not None:
             return scene.model_copy(update={"epoch": start.at}), []
         else:
@@ -87,7 +94,12 @@ def _first_row(scene: Scene, start: OemStart) -> datetime:
         date = read_oem(folder_of(scene) / start.file).utc.astype("datetime64[us]").item()
     except RecordingError as error:
         raise ValueError(str(error).rstrip(".")) from None
-    return element_sets.as_utc(date)
+    return _as_utc(date)
+
+
+def _as_utc(date: datetime) -> datetime:
+    """A naive UTC date with its zone, as scenes keep them."""
+    return date.replace(tzinfo=UTC)
 
 
 def _place(start: TleStart | OemStart | SmallBodyStart) -> str:
@@ -96,6 +108,8 @@ def _place(start: TleStart | OemStart | SmallBodyStart) -> str:
 
 def element_set(scene: Scene, start: TleStart) -> Faults:
     """A set that can be read, not too far from the epoch, round the Earth."""
+    from sailviz.exchange.element_sets import FARTHEST
+
     found: Faults = []
     if scene.body != "earth":
         found.append(("body", 'element sets are of satellites of the Earth: body = "earth"'))
@@ -126,7 +140,8 @@ def message(scene: Scene, start: OemStart) -> Faults:
 def planet(scene: Scene, start: PlanetStart) -> Faults:
     """At a planet of the Sun, on a date."""
     found = _round_the_sun(scene, "a planet")
-    if start.planet in getattr(scene.environment, "gravity_of_bodies", []) and start.distance == 0.0:
+    pulling = {"earth-moon": "earth"}
+    if start.planet in [pulling.get(word, word) for word in scene.environment.gravity_of_bodies] and not start.distance:
         words = f"{start.planet} pulls: say how far from its centre the flight begins, distance_km"
         found.append(("start.distance", words))
     return found

@@ -60,7 +60,7 @@ def lane(f, entity):
 
 def told(f, text):
     """Each phase in its colour with the day of its start, and what held; those that never came."""
-    line = re.search(r"phases: (.*)", text)
+    line = re.search(rf"phases{' in their lane' if '/world/tail' in f.picture.entities else ''}: (.*)", text)
     assert (line is not None) == bool(names(f)), "phases are not told"
     if line is None:
         return

@@ -190,3 +190,12 @@ def test_a_sail_that_would_speed_up_as_propellant_burns_is_refused_and_not_flown
     load_scene(scene(sail, massless))
     stated = {"kind": sail["kind"], "characteristic_acceleration_mm_s2": 0.3}
     load_scene(scene(stated, burning))
+
+
+@pytest.mark.parametrize("event", [{"cone_deg": 20}, {"thrust_acceleration_mm_s2": 1}])
+def test_no_event_watches_the_first_device_alone_in_the_name_of_all(event) -> None:
+    told = faults({**scene(SAIL, THRUSTER), "event": [{"radius_au": 1.1}, event]})
+    assert len(told) == 1
+    assert told[0].startswith(f"event[1].{next(iter(event))}: ")
+    assert "of all devices together" in told[0]
+    load_scene({**scene(SAIL, THRUSTER), "event": [{"pitch_deg": 20}]})

@@ -2,14 +2,20 @@
 
 import contextlib
 import io
+import re
 import shutil
 import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 import urllib.request
+from dataclasses import replace
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from types import SimpleNamespace
 from urllib.parse import parse_qs, urlsplit
 
 import numpy as np
@@ -24,6 +30,7 @@ from sailviz.recording.drawing.style import TARGET
 from sailviz.recording.sinks import viewer_binary
 from sailviz.recording.views.screenshot import has_vulkan
 from sailviz.recording.views.viewers import WebServer, open_viewer
+from sailviz.recording.views.web_folder import write_web_folder
 from sailviz.recording.web_page import free_port
 
 BROWSER, DRIVER = shutil.which("chromium"), shutil.which("chromedriver")
@@ -168,6 +175,29 @@ def chromium():
     return driver
 
 
+class Silent(SimpleHTTPRequestHandler):
+    """A web server that writes no log."""
+
+    def log_message(self, *_):
+        pass
+
+
+@contextlib.contextmanager
+def handed_out(path):
+    """A folder with the page, and a plain web server for it: its url."""
+    folder = path.parent / "site"
+    assert CliRunner().invoke(main, ["web", str(path), "--export", str(folder)]).exit_code == 0
+    handler = partial(Silent, directory=folder)
+    with ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        thread = threading.Thread(target=server.serve_forever)
+        thread.start()
+        try:
+            yield SimpleNamespace(url=f"http://127.0.0.1:{server.server_port}/")
+        finally:
+            server.shutdown()
+            thread.join()
+
+
 def looks(browser):
     """(n, 3) int colours of the page, and how many of them are different."""
     pixels = np.asarray(Image.open(io.BytesIO(browser.get_screenshot_as_png())).convert("RGB"), int).reshape(-1, 3)
@@ -175,22 +205,60 @@ def looks(browser):
 
 
 @pytest.mark.skipif(not (BROWSER and DRIVER), reason="no Chromium: apt-get install chromium chromium-driver")
-def test_chromium_shows_a_recording_without_the_internet(recorded):
+@pytest.mark.parametrize("place", [WebServer, handed_out])
+def test_chromium_shows_a_recording_without_the_internet(recorded, place):
+    """From this machine's own server, and from a folder that a plain web server hands out."""
     browser = chromium()
     try:
-        with WebServer(recorded) as server:
-            browser.get(server.url + "&renderer=webgl")
+        with place(recorded) as server:
+            browser.get(f"{server.url}{'&' if '?' in server.url else '?'}renderer=webgl")
             started, orbit = time.monotonic(), 0.0
             while orbit < 5e-4 and time.monotonic() - started < PATIENCE:
                 time.sleep(0.5)
                 pixels, colours = looks(browser)
                 orbit = np.mean(np.abs(pixels - TARGET).max(axis=1) < 30)
+            if place is handed_out:
+                browser.switch_to.frame(browser.find_element("tag name", "iframe"))
             assert browser.find_elements("id", "the_canvas_id")
             assert pixels.std() > 10
             assert colours > 500
             assert orbit >= 5e-4, "the designed orbit is not in the picture"
     finally:
         browser.quit()
+
+
+def test_the_exported_folder_asks_no_foreign_server_and_keeps_titles_as_text(run, tmp_path):
+    for name, title in (("a <b>.rrd", "</title><script>alert(1)</script>"), ("c.rrd", "Calm")):
+        record(replace(run, setting=replace(run.setting, title=title)), tmp_path / name)
+    written = write_web_folder([tmp_path / "a <b>.rrd", tmp_path / "c.rrd"], tmp_path / "site")
+    page = (tmp_path / "site" / "index.html").read_text()
+    assert "<script>alert" not in page
+    assert '["a \\u003cb>.rrd", "c.rrd"]' in page
+    viewer = (tmp_path / "site" / "viewer" / "index.html").read_text()
+    assert not re.search(r"""(src|href)=["']?https?://(?!github)""", viewer)
+    assert "script.src" not in viewer
+    assert written.recordings == ("a <b>.rrd", "c.rrd")
+    assert written.size == sum(path.stat().st_size for path in (tmp_path / "site").rglob("*") if path.is_file())
+    for name in written.recordings:
+        assert (tmp_path / "site" / name).read_bytes() == (tmp_path / name).read_bytes()
+
+
+def test_what_cannot_be_exported_is_refused_before_anything_is_written(recorded, tmp_path):
+    (tmp_path / "words.rrd").write_text("words, words")
+    (tmp_path / "other").mkdir()
+    shutil.copy(recorded, tmp_path / "other" / recorded.name)
+    site = tmp_path / "site"
+    for files, words in (
+        ([tmp_path / "words.rrd"], "not a Rerun recording"),
+        ([recorded, tmp_path / "other" / recorded.name, "--apart"], "have the same name, run.rrd"),
+    ):
+        result = CliRunner().invoke(main, ["web", *map(str, files), "--export", str(site)])
+        assert result.exit_code == 2
+        assert words in result.stderr
+        assert not site.exists()
+    file = CliRunner().invoke(main, ["web", str(recorded), "--export", str(tmp_path / "words.rrd")])
+    assert file.exit_code == 2
+    assert "it is no folder" in file.stderr
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="reads /proc")

@@ -4,6 +4,8 @@
 /attitude     pitch_rad, cone_rad, clock_rad, normal (3), quaternion (xyzw, body to inertial); of a stowed sail the
               normal is 0, pitch and clock are NaN
 /thrust       acceleration_m_s2 (inertial, 3), acceleration_rtn_m_s2 (3), magnitude_m_s2, on (bool)
+/thrust/NAME  the same of each device of a list of them; /thrust is their sum, on where one of them is, and /attitude
+              that of the first sail, or without one of the first device; the cone angle is that of the whole thrust
 /elements     semi_major_axis_m, eccentricity, inclination_rad, raan_rad, argument_rad, true_anomaly_rad
 /environment  whatever acted, the unit in each name, (n,) or (n, 3); absent where nothing did
 /phases       number of the phase, 1 for the first; absent in flights without. Their names and spans stand in /scene
@@ -34,7 +36,7 @@ import pyarrow as pa
 import rerun as rr
 from numpy.typing import ArrayLike
 
-from sailviz.run.arrays import EnsembleStatistics, Event, Run, Setting
+from sailviz.run.arrays import EnsembleStatistics, Event, Run, Setting, Thrust
 
 CONTRACT = "sailviz/1"
 
@@ -47,6 +49,21 @@ def archetype(entity: str) -> str:
 def flight_path(name: str) -> str:
     """Above the entities of one of several flights."""
     return f"/flight/{word(name)}"
+
+
+def thrust_path(name: str) -> str:
+    """The entity of what one of several devices does."""
+    return f"/thrust/{word(name)}"
+
+
+def thrust_table(thrust: Thrust) -> dict[str, np.ndarray]:
+    """The columns of /thrust, (n,) or (n, 3)."""
+    return {
+        "acceleration_m_s2": thrust.acceleration,
+        "acceleration_rtn_m_s2": thrust.acceleration_rtn,
+        "magnitude_m_s2": thrust.magnitude,
+        "on": thrust.on,
+    }
 
 
 def tables(run: Run) -> dict[str, dict[str, np.ndarray]]:
@@ -66,12 +83,8 @@ def tables(run: Run) -> dict[str, dict[str, np.ndarray]]:
             "normal": attitude.normal,
             "quaternion": attitude.quaternion,
         },
-        "/thrust": {
-            "acceleration_m_s2": thrust.acceleration,
-            "acceleration_rtn_m_s2": thrust.acceleration_rtn,
-            "magnitude_m_s2": thrust.magnitude,
-            "on": thrust.on,
-        },
+        "/thrust": thrust_table(thrust),
+        **{thrust_path(name): thrust_table(device) for name, device in run.devices.items()},
         "/elements": {
             "semi_major_axis_m": elements.semi_major_axis,
             "eccentricity": elements.eccentricity,

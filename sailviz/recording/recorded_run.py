@@ -11,6 +11,7 @@ import numpy as np
 from sailviz.elements import Elements
 from sailviz.errors import RecordingError
 from sailviz.frames import unit
+from sailviz.recording.contract import thrust_path
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.landmarks import LARGER
 from sailviz.recording.drawing.samples import unit_of
@@ -46,14 +47,25 @@ def run_of(recording: Recording) -> Run:
         velocity=state["velocity_m_s"],
         mass=state["mass_kg"],
         attitude=Attitude(*(attitude[name] for name in ("pitch_rad", "cone_rad", "clock_rad", "normal", "quaternion"))),
-        thrust=Thrust(
-            *(thrust[name] for name in ("acceleration_m_s2", "acceleration_rtn_m_s2", "magnitude_m_s2", "on"))
-        ),
+        thrust=thrust_from(thrust),
         elements=Elements(*(elements[name] for name in angles)),
         environment={} if acted is None else {name: acted[name] for name in acted},
         bodies={},
+        devices=devices_of(recording),
         events=tuple(Event(event.name, event.time, event.state) for event in recording.events),
     )
+
+
+def thrust_from(table: Mapping[str, np.ndarray]) -> Thrust:
+    """What pushed, by the columns of an entity."""
+    return Thrust(*(table[name] for name in ("acceleration_m_s2", "acceleration_rtn_m_s2", "magnitude_m_s2", "on")))
+
+
+def devices_of(recording: Recording) -> dict[str, Thrust]:
+    """Name -> what each device of a list did, in the list's order."""
+    told = recording.resolved.get("device")
+    names = [str(device.get("name")) for device in told] if isinstance(told, list) else []
+    return {name: thrust_from(recording[thrust_path(name)]) for name in names if thrust_path(name) in recording}
 
 
 def setting_of(recording: Recording, time: np.ndarray) -> Setting:

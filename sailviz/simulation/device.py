@@ -279,4 +279,5 @@ def craft(scene: Scene) -> Craft:
     """What flies, for its mesh and its labels."""
     record = device_of(scene)
     spin = steering_of(scene.steering).tether(scene.steering).spin
-    return Craft(scene.device.kind, record.label, spin=spin, **record.size(scene.device))
+    labels = [record.label, *(DEVICES[type(device)].label for device in scene.beside)]
+    return Craft(scene.device.kind, " + ".join(dict.fromkeys(labels)), spin=spin, **record.size(scene.device))

@@ -31,6 +31,7 @@ from sailviz.run.arrays import Run
 Source = Recording | Run | FilePath  # what can be compared and exported
 
 TRUTH = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/phases", "/approximation")
+DEVICES = "/thrust/"  # above the entities of several devices
 FLIGHT = "/flight/"  # above the entities of flights that were recorded together
 APART = (*TRUTH, "/events", "/scene", "/about")  # not part of the picture
 FACTS: tuple[str, ...] = ("title", "family", "body", "body_mu_m3_s2", "craft_kind", "rows", "complete", "ended")
@@ -157,7 +158,8 @@ def truth_of(recording: Recording) -> list[str]:
     """The entities of the contract that have rows: those of the run, of its ensembles, of the flights beside it."""
     ensembles = [name for name in recording.entities if name.startswith("/ensemble/") and name.count("/") == 2]
     beside = [name for name in recording.entities if name.startswith(FLIGHT) and not name.endswith("/scene")]
-    return [entity for entity in TRUTH if entity in recording] + ensembles + beside
+    devices = [name for name in recording.entities if name.startswith(DEVICES)]
+    return [entity for entity in TRUTH if entity in recording] + devices + ensembles + beside
 
 
 def flight_of(entity: str) -> str:
@@ -241,7 +243,8 @@ def table_of(recording: Recording, name: str) -> Table:
     if "time_s" in columns:
         return Table(steps, columns["time_s"], columns)
     top = flight_of(name)
-    if name.removeprefix(top) in TRUTH and f"{top}/state" in recording:
+    own = name.removeprefix(top)
+    if (own in TRUTH or own.startswith(DEVICES)) and f"{top}/state" in recording:
         # the float64 times, where the rows are those of /state
         state = Entity(f"{top}/state", list(recording.chunks(f"{top}/state")))
         if np.array_equal(state.timeline("step"), steps):

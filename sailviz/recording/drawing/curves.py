@@ -14,6 +14,7 @@ import numpy as np
 import rerun as rr
 
 from sailviz.recording import timelines
+from sailviz.recording.contract import word
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.craft import CraftDrawing
 from sailviz.recording.drawing.log import Color, Index, Picture
@@ -34,6 +35,7 @@ UNKNOWN = 0.25  # revolutions between rows over which light and shadow come and 
 MOST_CHANGES = 40  # of a lane that is still read
 LANE_NAMES = {"thrust": "push", "sunlit": "light"}  # paths stand on the lanes: a word each
 BAND_SHADE = 0.6
+ON = "on/"  # above the lanes of several devices
 
 
 @dataclass
@@ -312,6 +314,8 @@ class Lanes:
         self._names = [name for name, values in first.environment.items() if values.dtype == bool]
         if craft.pushes:
             self._names.insert(0, "thrust")
+        self._devices = {f"{ON}{word(name)}": name for name in first.devices} if len(first.devices) > 1 else {}
+        self._names[:0] = self._devices
         self._craft = craft
         self._time = frame.start  # s, of the last row so far
         self._far = np.inf if frame.sun else UNKNOWN * frame.period
@@ -324,7 +328,10 @@ class Lanes:
         """A block of a run, all rows."""
         far = np.diff(run.time, prepend=self._time) > self._far
         for lane in self._names:
-            on = run.thrust.on if lane == "thrust" else run.environment[lane]
+            if lane in self._devices:
+                on = run.devices[self._devices[lane]].on
+            else:
+                on = run.thrust.on if lane == "thrust" else run.environment[lane]
             states = np.where(np.asarray(on, bool), "on", "off")
             self._add(lane, run, np.where(far, "unknown", states) if lane == "sunlit" else states)
         for edges in self._edges:
@@ -352,6 +359,9 @@ class Lanes:
             if not changes > 0 or len(states) > MOST_CHANGES:
                 continue
             on, off = lane_style(self._craft.lane if lane == "thrust" else lane)
+            if lane in self._devices:
+                name = self._devices[lane]
+                on, off = (f"{name} on", on[1]), (f"{name} off", off[1])
             configuration = rr.StateConfiguration(
                 values=["on", "off", "unknown", *(["no data"] if self._edges else [])],
                 labels=[on[0], off[0], "between far rows", *(["no data"] if self._edges else [])],

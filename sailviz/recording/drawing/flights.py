@@ -21,6 +21,7 @@ from sailviz.recording.drawing.layout import Span
 from sailviz.recording.drawing.log import Color, Picture
 from sailviz.recording.drawing.names import Names
 from sailviz.recording.drawing.samples import Frame, Samples
+from sailviz.recording.drawing.shares import own_on
 from sailviz.recording.drawing.story import Story
 from sailviz.recording.drawing.trail import log_trail, trail_colors
 from sailviz.run.arrays import Run
@@ -85,7 +86,7 @@ def log_body(picture: Picture, story: Story, path: str, size: float) -> None:
     if size > 0:
         picture.log_scale(f"{path}/body/shape", size)
     log_stowing(picture, f"{path}/body/shape", craft, index, story.stowed, False)
-    Glow(picture, f"{path}/body", craft).add(samples.index_of, samples.run.thrust.on)
+    Glow(picture, f"{path}/body", craft).add(samples.index_of, own_on(samples.run))
     if story.most > 0:
         picture.log_arrow_style(f"{path}/push", style.PUSH, style.WIDTH["push"])
         picture.log_arrows(f"{path}/push", index, story.arrow())

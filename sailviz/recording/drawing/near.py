@@ -25,6 +25,7 @@ class Near:
     thrust: np.ndarray
     velocity: np.ndarray  # unit vector, zero where the craft stands still
     primer: np.ndarray | None
+    devices: dict[str, np.ndarray]  # name of each device of a list -> its share of the thrust, m/s2
     by_light: bool  # x is the line of the light
 
 
@@ -36,7 +37,8 @@ def near_of(samples: Samples, sail: bool, sun: bool) -> Near:
         alone = sail and light is None  # an own star, at the centre
         body = body_axes(samples.stance_rtn, np.tile([0.0, 1.0, 0.0], (len(samples), 1)))
         parts = (samples.normal_rtn, body, samples.thrust_rtn, samples.velocity_rtn, samples.primer_rtn)
-        return Near(*parts, by_light=sun or alone)
+        shares = {name: device.acceleration_rtn for name, device in run.devices.items()}
+        return Near(*parts, devices=shares, by_light=sun or alone)
     axes = light_axes(run.position - light)
     moving = np.any(samples.velocity_rtn, axis=1, keepdims=True)
     primer, orbital = run.environment.get("primer_direction"), rtn(run.position, run.velocity)
@@ -47,6 +49,7 @@ def near_of(samples: Samples, sail: bool, sun: bool) -> Near:
         to_frame(axes, run.thrust.acceleration),
         np.where(moving, to_frame(axes, unit(run.velocity)), 0.0),
         None if primer is None else to_frame(axes, primer),
+        {name: to_frame(axes, device.acceleration) for name, device in run.devices.items()},
         by_light=True,
     )
 

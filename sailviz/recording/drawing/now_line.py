@@ -10,6 +10,7 @@ import rerun as rr
 from sailviz.recording.drawing.log import Index, Picture
 from sailviz.recording.drawing.phases import names_in_rows
 from sailviz.recording.drawing.phrases import digits, moments, on_day, push_words
+from sailviz.recording.drawing.shares import share_words
 from sailviz.recording.drawing.story import GROUND, Story
 from sailviz.run import gaps as spans
 from sailviz.run.arrays import EnsembleStatistics
@@ -22,13 +23,18 @@ BETWEEN = " · "
 
 def now_texts(story: Story) -> list[str]:
     """What is said of each drawn row (n,)."""
+    several = len(story.samples.run.devices) > 1
     if story.frame.low:
-        parts = [altitude_words(story), speed_words(story, 2), drag_words(story), *light_words(story)]
+        acting = share_words(story) if several else drag_words(story)
+        parts = [altitude_words(story), speed_words(story, 2), acting, *light_words(story)]
     else:
         parts = [distance_words(story)]
         if story.setting.ensembles:
             parts += [push_words(story.push)] if story.most > 0 else []
             parts += [ensemble_words(story)]
+        elif several:  # whose shares need the room of the speed
+            parts += [share_words(story)]
+            parts += [angle_words(story)] if story.craft.flow_word else []
         else:
             parts += [speed_words(story, 1)]
             parts += [push_words(story.push)] if story.craft.pushes else []

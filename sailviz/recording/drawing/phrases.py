@@ -7,6 +7,7 @@ import numpy as np
 DAY = 86400.0
 SHORT = 3 * DAY  # s below which a run is told in hours
 PUSH_UNITS = ((1e-3, "mm/s²"), (1e-6, "µm/s²"), (1e-9, "nm/s²"))
+NAMES, NAME = 40, 6  # letters of all devices' names together, and of each at least, before they are cut
 WIDE = 50.0  # factor between the largest and the median push from which each is told in its own unit
 
 
@@ -30,6 +31,24 @@ def push_words(push: np.ndarray, word: str = "push") -> list[str]:
         return f"{word} {amount(a, *push_unit(reference), most=reference)}" if a > 0 else f"no {word}"
 
     return [words(a) for a in push.tolist()]
+
+
+def push_with_shares(push: np.ndarray, shares: dict[str, np.ndarray]) -> list[str]:
+    """What acts in each row (n,), m/s2, and in brackets what each device adds to it, in the same unit:
+    "push 0.42 mm/s² (solar-sail 0.32, thruster 0.11)". Long names are cut."""
+    most = max(float(share.max()) for share in shares.values())
+    longest = max(NAME, NAMES // len(shares))
+    names = [name if len(name) <= longest else name[: longest - 1] + "…" for name in shares]
+    lines = push_words(push)
+    for row, line in enumerate(lines):
+        usual = push_unit(most)[0]
+        size = next((size for size, unit in PUSH_UNITS if line.endswith(unit)), usual)
+        each = [float(share[row]) for share in shares.values()]
+        decimals = digits((most if size == usual else max(each)) / size)
+        told = [f"{value / size:.{decimals}f}" if value > 0 else "off" for value in each]
+        if any(each):
+            lines[row] = f"{line} ({', '.join(map(' '.join, zip(names, told, strict=True)))})"
+    return lines
 
 
 def amount(value: float, size: float, name: str, most: float) -> str:

@@ -12,6 +12,7 @@ from sailviz.recording.drawing import style
 from sailviz.recording.drawing.craft import CraftDrawing
 from sailviz.recording.drawing.log import Color
 from sailviz.recording.drawing.samples import Frame
+from sailviz.recording.drawing.shares import device_colors
 from sailviz.run.arrays import Run
 
 Values = Callable[[Run], np.ndarray]
@@ -137,7 +138,7 @@ def plots_of(first: Run, frame: Frame, craft: CraftDrawing) -> list[Plot]:
     low = frame.low
     found = [altitude_plot(first)] if low else open_space_plots(first, frame, craft)
     if craft.pushes and not (low and "plasma_force_N_m" in first.environment):
-        found.append(push_plot(craft))
+        found.append(push_plot(craft, first))
     found += [replace(plot, rare=low) for plot in orbit_plots()]
     if first.approximations:
         found.append(approximation_plot(first))
@@ -281,15 +282,19 @@ def altitude_plot(first: Run) -> Plot:
     )
 
 
-def push_plot(craft: CraftDrawing) -> Plot:
-    """The size of what pushes or brakes."""
-    word = craft.force
+def push_plot(craft: CraftDrawing, first: Run) -> Plot:
+    """The size of what pushes or brakes, and of several devices what each does."""
+    word, colors = craft.force, device_colors(first) if len(first.devices) > 1 else {}
+
+    def values(run: Run) -> np.ndarray:
+        return np.stack([run.thrust.magnitude, *(run.devices[name].magnitude for name in colors)], 1)
+
     return Plot(
         "push",
         f"{word[:1].upper()}{word[1:]}",
-        (word,),
-        (style.QUANTITY[word],),
-        lambda run: run.thrust.magnitude[:, None],
+        (word, *colors),
+        (style.QUANTITY[word], *colors.values()),
+        values,
         natural=-0.6,
         bonus=1.2,
         from_zero=True,

@@ -17,6 +17,7 @@ from sailviz.recording.drawing.layout import Space
 from sailviz.recording.drawing.log import Color, Picture, f4
 from sailviz.recording.drawing.names import Names
 from sailviz.recording.drawing.phrases import push_words
+from sailviz.recording.drawing.shares import log_close_shares, own_on
 from sailviz.recording.drawing.sky import log_stars
 from sailviz.recording.drawing.story import Story
 
@@ -48,6 +49,7 @@ def log_close_up(picture: Picture, story: Story, below: int) -> Space:
     length, names = push_length(story), Names(story, (ASPECT[below] * HIGH[below], HIGH[below]))
     log_arrow(picture, story, "push", style.PUSH, length, style.WIDTH["close push"])
     add_name(names, "push", style.PUSH, beyond(length, eye, 2.6), push_words(story.push), PUSH)
+    log_close_shares(picture, story, names, length, SHORT + LONGER)
     velocity = VELOCITY * story.near.velocity
     log_arrow(picture, story, "velocity", style.SPEED, velocity, style.WIDTH["close arrow"])
     add_name(names, "velocity", style.SPEED, beyond(velocity, eye, 1.0), "flies this way", ARROW)
@@ -76,7 +78,7 @@ def log_body(picture: Picture, story: Story) -> None:
     craft.log_shape(picture, "/sail/body/shape", True)
     picture.log_scale("/sail/body/shape", craft.close_size)
     log_stowing(picture, "/sail/body/shape", craft, story.index, story.stowed, True)
-    Glow(picture, "/sail/body", craft).add(samples.index_of, samples.run.thrust.on)
+    Glow(picture, "/sail/body", craft).add(samples.index_of, own_on(samples.run))
 
 
 def push_length(story: Story) -> np.ndarray:

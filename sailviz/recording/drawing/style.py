@@ -53,6 +53,11 @@ QUANTITY = {  # what a curve shows, by the words of its plot
     "analytic": [255, 176, 66],
     "switch": [190, 160, 255],
 }
+DEVICES = {  # of several on one craft, what each adds
+    "solar-sail": [255, 206, 84],
+    "electric-sail": [186, 140, 255],
+    "thruster": [120, 190, 255],
+}
 CONTROL = {  # what decides the thrust of an ensemble's flights
     "none": [255, 176, 66],
     "pressure": [98, 214, 160],
@@ -153,7 +158,9 @@ WIDTH = {  # half the width of a line in ui points
     "many drags": 2.2,
     "tail": 3.0,
     "ring": 1.5,
+    "share": 1.5,
     "close push": 3.4,
+    "close share": 2.0,
     "close arrow": 1.6,
     "flow": 1.3,
     "arc": 1.5,

@@ -33,6 +33,7 @@ from sailviz.recording.drawing.log import Picture, f4
 from sailviz.recording.drawing.names import MAIN, MAIN_OVER_TABLE, Names
 from sailviz.recording.drawing.planet import Planet, about_axis
 from sailviz.recording.drawing.samples import orbits
+from sailviz.recording.drawing.shares import log_shares
 from sailviz.recording.drawing.sky import log_stars, log_sun
 from sailviz.recording.drawing.story import Story
 from sailviz.recording.drawing.style import points
@@ -61,6 +62,8 @@ def log_system(
     names = Names(story, MAIN_OVER_TABLE if story.setting.ensembles else MAIN)
     size = craft_size(story, bool(flights))
     log_backdrop(picture, story, names)
+    if story.most > 0 and not flights:
+        log_shares(picture, story, names, story.arrow())
     log_references(picture, story, found)
     log_craft(picture, story, size, names)
     log_approximations(picture, story, names)

@@ -99,6 +99,11 @@ def sidereal_angle(seconds) -> np.ndarray:
     return np.radians(280.46061837 + 360.98564736629 * days + 0.000387933 * centuries**2) % (2 * np.pi)
 
 
+def path_word(name: str) -> str:
+    """A name as part of a path."""
+    return "".join(letter if letter.isalnum() else "_" for letter in name.lower())
+
+
 class Truth:
     """The numbers of one recording."""
 
@@ -111,6 +116,10 @@ class Truth:
         self.normal, self.quaternion = attitude["normal"], attitude["quaternion"]
         self.pitch, self.cone, self.clock_angle = (attitude[f"{name}_rad"] for name in ("pitch", "cone", "clock"))
         self.thrust, self.on = thrust["acceleration_m_s2"], thrust["on"].astype(bool)
+        told = recording.resolved.get("device") if not top else None
+        names = [device["name"] for device in told] if isinstance(told, list) else []
+        self.kinds = {device["name"]: device["kind"] for device in told} if names else {}
+        self.devices = {name: recording[f"/thrust/{path_word(name)}"] for name in names}
         self.elements = recording[f"{top}/elements"]
         self.environment = dict(recording[f"{top}/environment"]) if f"{top}/environment" in recording else {}
         self.scene = {name: values[0] for name, values in recording[f"{top}/scene"].items()}

@@ -176,6 +176,35 @@ def kepler(time, mu, position, velocity):
     return y[:, :3], y[:, 3:]
 
 
+def several_devices():
+    """A sail, an electric sail and a thruster that fires at times, each turned its own way."""
+    sail = {"kind": "solar-sail", "characteristic_acceleration_mm_s2": 0.7}
+    wheel = {
+        "kind": "electric-sail",
+        "characteristic_acceleration_mm_s2": 0.4,
+        "active_d": [[0, 260]],
+        "steering": {"kind": "meridian", "pitch_deg": 25, "clock_deg": -40},
+    }
+    engine = {
+        "kind": "thruster",
+        "name": "Ion engine",
+        "mass_kg": 300,
+        "thrust_mN": 80,
+        "specific_impulse_s": 3000,
+        "active_d": [[60, 130], [200, 330]],
+        "steering": {"kind": "inertial", "direction": [0.5, 0.2, 1]},
+    }
+    return sailviz.simulate(
+        {
+            "title": "several devices",
+            "start": {"kind": "elements", "semi_major_axis_au": 0.9, "eccentricity": 0.1, "inclination_deg": 25},
+            "device": [sail, engine, wheel],
+            "steering": {"kind": "orbital", "pitch_deg": 35, "clock_deg": 60},
+            "propagation": {"duration_d": 400, "outputs": 61},
+        }
+    )
+
+
 def own_gaps():
     """A sail that is stowed for a while, twice without data: rows that are lost, and a silence between rows."""
     time = 420 * DAY * np.linspace(0, 1, 85)
@@ -299,6 +328,21 @@ def round_a_planet():
     )
 
 
+def several_round_a_planet():
+    """A sail and a thruster high over the Earth: two parts of a push in the frame of the light."""
+    ahead = {"kind": "thruster", "acceleration_mm_s2": 0.4, "steering": {"kind": "tangential"}}
+    return sailviz.simulate(
+        {
+            "title": "A sail and a thruster",
+            "body": "earth",
+            "start": {"kind": "circular", "radius_km": 42164, "inclination_deg": 20},
+            "device": [{"kind": "solar-sail", "characteristic_acceleration_mm_s2": 0.6}, ahead],
+            "steering": {"kind": "sun-frame", "pitch_deg": 30, "clock_deg": 70},
+            "propagation": {"duration_d": 3, "outputs": 41},
+        }
+    )
+
+
 def in_and_out_of_the_wind():
     """A wheel on an ellipse that leaves the magnetosphere."""
     return sailviz.simulate(
@@ -393,6 +437,8 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "own sparse": own_sparse,
     "own steps": own_steps,
     "own low gap": own_low_gap,
+    "several devices": several_devices,
+    "several round a planet": several_round_a_planet,
     "together sails": together_sails,
     "together dated": together_dated,
     "together low": together_low,

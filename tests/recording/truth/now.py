@@ -108,6 +108,20 @@ def push(f, row, word, value, unit):
     told(value, braking(f, word)[row] / PUSHES[unit])
 
 
+@part(r"(?:push ([\d.]+)|no push)(?: (\S+/s²))? \((.*)\)")
+def shares(f, row, value, unit, words):
+    """The whole push, and each device in its order with what it adds, in the same unit; off where it adds nothing."""
+    told(value or "0", braking(f, "push")[row] / PUSHES[unit or "mm/s²"])
+    for (name, device), said in zip(f.truth.devices.items(), words.split(", "), strict=True):
+        size = device["magnitude_m_s2"][row]
+        cut, amount = said.rsplit(" ", 1)
+        assert cut == name or name.startswith(cut.removesuffix("…"))
+        if size == 0:
+            assert amount == "off"
+        else:
+            told(amount, size / PUSHES[unit or "mm/s²"])
+
+
 @part(r"no (push|drag|air drag)")
 def nothing(f, row, word):
     assert braking(f, word)[row] == 0

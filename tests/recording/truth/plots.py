@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from . import phases
-from .facts import AU, DAY, planet_place
+from .facts import AU, DAY, path_word, planet_place
 from .measure import hue, same_number
 from .now import heights
 
@@ -212,7 +212,8 @@ def clock(f, entity, *_):
 def thrust(f, entity, *_):
     """The size of the thrust, in the colour of its arrow."""
     size = np.linalg.norm(f.truth.thrust, axis=1)
-    series(f, entity, {"drag" if f.truth.kind == "plasma-brake" else "push": size})
+    devices = {name: device["magnitude_m_s2"] for name, device in f.truth.devices.items()}
+    series(f, entity, {"drag" if f.truth.kind == "plasma-brake" else "push": size, **devices})
 
 
 def off_by(f, entity, *_):
@@ -256,12 +257,17 @@ def lane(f, entity):
     """On and off as the column says, row by row; unknown only where rows are far apart on their orbit; and from the
     beginning of each gap "no data" until the next row."""
     name = LANE_OF.get(entity.strip("/"), entity.strip("/"))
-    column = f.truth.on if name == "thrust" else f.truth.environment[name].astype(bool)
+    own = {f"on/{path_word(device)}": device for device in f.truth.devices}
+    if name in own:
+        column = f.truth.devices[own[name]]["on"].astype(bool)
+    else:
+        column = f.truth.on if name == "thrust" else f.truth.environment[name].astype(bool)
     values, labels = (f.picture.fixed(entity, f"StateConfiguration:{key}") for key in ("values", "labels"))
     told = dict(zip(values, labels, strict=True))
     on, off = LANES.get(name, (name.replace("_", " "), f"no {name.replace('_', ' ')}"))
     if name == "thrust" and f.truth.kind == "plasma-brake":
         on, off = "Brake on", "Brake off"
+    on, off = (f"{own[name]} on", f"{own[name]} off") if name in own else (on, off)
     assert told["on"] == on
     assert told["off"] == off
     gap = np.diff(f.truth.time, prepend=f.truth.time[0])

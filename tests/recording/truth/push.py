@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
-from .facts import unit
+from .facts import path_word, unit
 from .measure import hue, same_direction, same_place, same_turn
+from .now import PUSHES, told
 from .picture import turn
-from .seen import arrows, home, seen, shown
+from .seen import arrows, home, near, seen, shown, texts
 
 RAMP = np.array([[74, 56, 140], [176, 60, 140], [255, 96, 72], [255, 176, 84]], float)  # weak to strong
 FOOT = 0.30  # brightness of a wall at the trail
 GHOSTS = 0.62  # of the craft's colours
-SHORTEST, LONGEST = 0.17, 0.34  # of the reach: arrows; on a ring
+SHORTEST, LONGEST = SHORTEST_LONGEST = 0.17, 0.34  # of the reach: arrows; on a ring
 ON_RING = 0.12, 0.24
 
 
@@ -219,6 +222,54 @@ def scene_reach(f) -> float:
         assert name
         far.append(np.nanmax(table) / f.truth.length)
     return max(far)
+
+
+def share(f, word):
+    """The name of a device by its word, and its acceleration (n, 3) m/s2."""
+    (name,) = (name for name in f.truth.devices if path_word(name) == word)
+    return name, f.truth.devices[name]["acceleration_m_s2"]
+
+
+def share_arrow(f, entity, word):
+    """From the craft, a device's acceleration times one factor in each row, the same for all devices and at most that
+    of the whole push; nothing where it is the whole push. Its colour is that of its kind."""
+    name, own = share(f, word)
+    origin, vector = arrows(f, entity)
+    same_place(origin, home(f, entity))
+    alone = np.linalg.norm(own - f.truth.thrust, axis=1) <= 1e-6 * strength(f)
+    true = np.where(alone[:, None], 0.0, own)
+    same_direction(vector, seen(f, entity, true))
+    top = entity.rsplit("/", 2)[0]
+    _, whole = arrows(f, f"{top}/push")
+    parts = [arrows(f, f"{top}/shares/{path_word(other)}")[1] for other in f.truth.devices]
+    sizes = [device["magnitude_m_s2"] for device in f.truth.devices.values()]
+    longest = 12.0 if near(entity) else 2 * (ON_RING if ring(f) else SHORTEST_LONGEST)[0] * scene_reach(f)
+    for row in np.flatnonzero(np.any(vector, axis=1)):
+        factor = np.linalg.norm(whole[row]) / strength(f)[row]
+        factor = min(factor, longest / max(size[row] for size in sizes))
+        assert abs(np.linalg.norm(vector[row]) - factor * np.linalg.norm(own[row])) < 1e-5 * longest
+        together = np.sum([arrow[row] for arrow in parts], axis=0)
+        expected = factor * strength(f)[row] / np.linalg.norm(whole[row]) * whole[row]
+        assert np.abs(together - expected).max() < 1e-5 * longest, "the devices do not add up to the push"
+    hues = {"solar-sail": "yellow", "electric-sail": "violet", "thruster": "blue"}
+    assert hue(f.picture.color(entity, "Arrows3D:colors")[0]) == hues[f.truth.kinds[name]]
+
+
+def share_name(f, entity, word):
+    """The device's name beyond the tip of its arrow; near by with what it adds in words."""
+    name, own = share(f, word)
+    ways, size = seen(f, entity, own), np.linalg.norm(own, axis=1)
+    for row, place in shown(f, entity):
+        assert size[row] > 0
+        assert (place - home(f, entity)[row]) @ ways[row] > 0
+    if not near(entity):
+        assert f.picture.fixed(entity, "Points3D:labels") == [name]
+        return
+    for row, text in enumerate(texts(f, entity)):
+        found = re.fullmatch(rf"{name} ([\d.]+) (\S+/s²)|no {name}", text)
+        assert (found.group(1) is None) == (size[row] == 0)
+        if size[row]:
+            told(found.group(1), size[row] / PUSHES[found.group(2)])
 
 
 def push_name(f, entity):

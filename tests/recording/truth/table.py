@@ -106,6 +106,8 @@ SYSTEM = (
     Claim("/world/craft", f"{MOVE} {POINT}", "/state position_m", INERTIAL, "1/L", of_place),
     Claim("/world/craft/name", POINT, "/scene craft_kind", INERTIAL, "1/L", low.craft_dot_name),
     Claim("/world/craft/body", MOVE, "/attitude quaternion", INERTIAL, "1", craft.body_pose),
+    Claim("/world/craft/shares/*", ARROW, "/thrust/*", INERTIAL, "that of the push", push.share_arrow),
+    Claim("/world/names/shares/*", POINT, "/thrust/*", INERTIAL, "the arrow's tip", push.share_name),
     Claim("/world/craft/push", ARROW, "/thrust acceleration_m_s2", INERTIAL, "half and half", push.push_arrow),
 )
 
@@ -189,6 +191,8 @@ CLOSE_UP = (
     Claim("/sail/radial", LINE, "/state position_m", NEAR, "direction", close_up.radial),
     Claim("/sail/normal", ARROW, "/attitude normal", NEAR, "-1", close_up.sunward_normal),
     Claim("/sail/push", ARROW, "/thrust acceleration_m_s2", NEAR, "7.5 and a root", push.close_push),
+    Claim("/sail/shares/*", ARROW, "/thrust/*", NEAR, "that of the push", push.share_arrow),
+    Claim("/sail/shares/*/name", POINT, "/thrust/*", NEAR, "in words", push.share_name),
     Claim("/sail/push_name", POINT, "/thrust magnitude_m_s2", NEAR, "in words", close_up.push_word),
     Claim("/sail/velocity", ARROW, "/state velocity_m_s", NEAR, "direction", craft.velocity_arrow),
     Claim("/sail/primer", ARROW, "primer_direction", NEAR, "direction", craft.primer_arrow),
@@ -247,6 +251,7 @@ CURVES = (
         for lane in ("push", "light", "force_law_valid", "warm", "stowed", "in_solar_wind")
     ),
     Claim("/phase", "StateChange StateConfiguration", "/events, /scene", "-", "in words", phases.lane),
+    Claim("/on/*", "StateChange StateConfiguration", "/thrust/* on", "-", "in words", lambda f, e, _: plots.lane(f, e)),
     Claim("/now", "TextDocument", "every column", "-", "in words", now_line),
     Claim("/log", "TextLog", "/events", "-", "in words", plots.log),
     Claim("/about", "TextDocument", "/scene", "-", "in words", about),

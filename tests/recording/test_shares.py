@@ -1,0 +1,76 @@
+"""What each device of a list does, through a recording and back."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from sailviz import compare, read, record, simulate
+from sailviz.recording import export
+from sailviz.recording.recorded_run import run_of
+from sailviz.run.arrays import Run
+
+NAMES = {"sail": "sail", "Ion drive": "ion_drive"}  # and the words in paths
+
+
+@pytest.fixture(scope="module")
+def flown() -> Run:
+    steering = {"kind": "tangential"}
+    return simulate(
+        {
+            "title": "a sail and an engine",
+            "start": {"kind": "circular", "radius_au": 1.0},
+            "device": [
+                {"kind": "solar-sail", "name": "sail", "characteristic_acceleration_mm_s2": 0.5},
+                {"kind": "thruster", "name": "Ion drive", "acceleration_mm_s2": 0.2, "active_d": [[3, 60]],
+                 "steering": steering},
+            ],
+            "propagation": {"duration_d": 100, "outputs": 21},
+        }
+    )  # fmt: skip
+
+
+def test_a_recording_tells_what_each_device_did(flown: Run, tmp_path: Path) -> None:
+    record(flown, tmp_path / "a.rrd")
+    recording = read(tmp_path / "a.rrd")
+    told = [recording[f"/thrust/{word}"] for word in NAMES.values()]
+    for name, table in zip(NAMES, told, strict=True):
+        np.testing.assert_array_equal(table["acceleration_m_s2"], flown.devices[name].acceleration)
+        np.testing.assert_array_equal(table["on"], flown.devices[name].on)
+    total = sum(table["acceleration_m_s2"] for table in told)
+    np.testing.assert_allclose(total, recording["/thrust"]["acceleration_m_s2"], rtol=1e-14, atol=1e-19)
+    again = run_of(recording)
+    assert list(again.devices) == list(NAMES)
+    np.testing.assert_array_equal(again.devices["Ion drive"].magnitude, flown.devices["Ion drive"].magnitude)
+
+
+def test_a_comparison_sees_thrust_that_went_over_to_the_other_device(flown: Run, tmp_path: Path) -> None:
+    """Their sum is the same."""
+    record(flown, tmp_path / "a.rrd")
+    assert compare(flown, tmp_path / "a.rrd").equal
+    sail, drive = flown.devices.values()
+    other = replace(flown, devices={"sail": drive, "Ion drive": sail})
+    told = compare(other, tmp_path / "a.rrd")
+    assert not told.equal
+    differing = {difference.quantity.partition(":")[0] for difference in told.different}
+    assert differing == {"/thrust/sail", "/thrust/ion_drive"}
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet", "npz"])
+def test_a_table_holds_what_each_device_did(flown: Run, tmp_path: Path, ending: str) -> None:
+    import pyarrow.csv
+    import pyarrow.parquet
+
+    record(flown, tmp_path / "a.rrd")
+    (path, *_) = export(tmp_path / "a.rrd", tmp_path / f"a.{ending}", entities=["thrust/ion_drive"])
+    key = "thrust/ion_drive.magnitude_m_s2"
+    if ending == "npz":
+        column = np.load(path)[key]
+    else:
+        table = pyarrow.csv.read_csv(path) if ending == "csv" else pyarrow.parquet.read_table(path)
+        assert not any(name.startswith("thrust/sail") for name in table.column_names)
+        column = table[key].to_numpy()
+    np.testing.assert_array_equal(column, flown.devices["Ion drive"].magnitude)

@@ -259,9 +259,10 @@ def _validated(raw: dict[str, Any], text: str, source: str, given: list[str]) ->
 @cache
 def schema() -> dict[str, Any]:
     """JSON Schema of the scene file, every spelling of every quantity included, for editors and other tools."""
-    from sailviz.scene.json_schema import with_units
+    from sailviz.scene.json_schema import schema_of
 
-    found = Scene.model_json_schema()
+    found = schema_of(Scene, "scene")
     one = found["properties"]["device"]
-    found["properties"]["device"] = {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]}
-    return with_units(found)
+    told = {key: one.pop(key) for key in ("title", "description") if key in one}
+    found["properties"]["device"] = told | {"anyOf": [one, {"type": "array", "items": one, "minItems": 1}]}
+    return found

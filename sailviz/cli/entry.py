@@ -24,6 +24,7 @@ COMMANDS = {  # name, which is also that of the module -> function there
     "export": "export",
     "figure": "figure",
     "gallery": "gallery",
+    "gtoc13": "gtoc13",
     "info": "info",
     "list": "list_scenes",
     "picture": "picture",

@@ -11,19 +11,34 @@ from sailviz.cli.shared import in_one_sentence
 @click.command()
 @click.argument("file")
 @click.option(
-    "--to", "form", type=click.Choice(["csv", "parquet", "npz", "oem"]), help="Format; by default the ending of -o."
+    "--to",
+    "form",
+    type=click.Choice(["csv", "parquet", "npz", "oem", "spk"]),
+    help="Format; by default the ending of -o, .bsp for spk.",
 )
 @click.option("-o", "--output", metavar="FILE|DIR", help="By default a file named after the recording, in this folder.")
 @click.option(
     "--entity", "entities", multiple=True, metavar="/ENTITY", help="Only this entity, e.g. /state; repeatable."
 )
-@click.option("--frame", default="", help="Frame of an OEM: EME2000, or ECLIPJ2000 for what circles the Sun.")
-def export(file: str, form: str | None, output: str | None, entities: tuple[str, ...], frame: str) -> None:
-    """Write a recording as CSV, Parquet, numpy archive (npz) or orbit ephemeris message (oem)."""
+@click.option("--frame", default="", help="Frame of an OEM or SPK: EME2000, or ECLIPJ2000.")
+@click.option("--craft-id", type=int, default=-910001, show_default=True, help="NAIF id of the craft in an SPK.")
+@click.option("--centre-id", type=int, help="NAIF id of the central body in an SPK; by default by its name.")
+def export(
+    file: str,
+    form: str | None,
+    output: str | None,
+    entities: tuple[str, ...],
+    frame: str,
+    craft_id: int,
+    centre_id: int | None,
+) -> None:
+    """Write a recording as CSV, Parquet, numpy archive (npz), orbit ephemeris message (oem) or SPICE kernel (spk)."""
     from sailviz import recording
 
     with in_one_sentence():
         if output is not None:
             folder_at(output, "files") if is_folder(output) else file_at(output, "file")
-        for path in recording.export(file, output, form or "", entities=entities, frame=frame):
+        for path in recording.export(
+            file, output, form or "", entities=entities, frame=frame, craft_id=craft_id, centre_id=centre_id
+        ):
             click.echo(path)

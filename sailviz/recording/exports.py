@@ -4,7 +4,7 @@ csv, parquet   one table: step, time_s, utc where there is an epoch, then entity
                second file beside it, NAME.events.csv, and each ensemble in NAME.ensemble.OWN_NAME.csv; each flight
                beside the first, on its own clock, in NAME.flight.OWN_NAME.csv
 npz            every column under its own key, e.g. state.position_m (n, 3), events.time_s, scene.identity
-oem            position and velocity, CCSDS 502.0-B, in EME2000; after a gap and where the velocity jumps a new segment
+oem, spk       position and velocity (orbit_files.py); after a gap and where the velocity jumps a new segment
 """
 
 from __future__ import annotations
@@ -20,22 +20,32 @@ import pyarrow as pa
 from sailviz import files
 from sailviz.errors import RecordingError
 from sailviz.recording.comparison.tables import Evidence, Source, Table, evidence, flight_of
+from sailviz.recording.orbit_files import CRAFT, ORBIT_FILES, ids_named, write_orbit
 from sailviz.recording.reader import EventRow, FilePath
 
-FORMATS = ("csv", "parquet", "npz", "oem")
+FORMATS = ("csv", "parquet", "npz", *ORBIT_FILES)
+ENDING = {"spk": "bsp"}  # of a file, where that is not the format's word
+ENDINGS = {ending: to for to, ending in ENDING.items()}
 FEW = 5  # rows of an entity that stands on other rows than the truth, where only a part of those is wanted
-STATE = ("position_m", "velocity_m_s")
 LETTERS = {"quaternion": "xyzw", "acceleration_rtn_m_s2": "rtn"}
 
 
 def export(
-    source: Source, out: FilePath | None = None, to: str = "", *, entities: Sequence[str] = (), frame: str = ""
+    source: Source,
+    out: FilePath | None = None,
+    to: str = "",
+    *,
+    entities: Sequence[str] = (),
+    frame: str = "",
+    craft_id: int = CRAFT,
+    centre_id: int | None = None,
 ) -> tuple[Path, ...]:
     """Write a recording (or a Run, or a path of either kind that `compare` takes) for another program -> files written.
 
     out : file or folder; without one a file named after the recording in the current folder. to : one of FORMATS, by
     default the ending of `out`; a device or a pipe takes the rows alone, with no file of events beside it. entities :
-    those wanted, all of the truth by default. frame : of an OEM, see `to_oem`.
+    those wanted, all of the truth by default. frame : of an OEM or SPK, see `orbit_files`. craft_id, centre_id : NAIF's
+    of the craft and of the central body in an SPK; that of the Sun, a planet or the Moon needs no word.
     Raises RecordingError, in one sentence, for what cannot be read, written or said in that format.
     """
     data = evidence(source)
@@ -43,12 +53,15 @@ def export(
     wanted = tuple("/" + name.strip("/") for name in entities)
     files.check(path, "table")
     try:
-        if to == "oem":
+        if to != "spk" and ids_named(craft_id, centre_id):
+            raise RecordingError(f"craft and centre have NAIF ids in an SPK; {to} knows none")
+        if to in ORBIT_FILES:
             if wanted and wanted != ("/state",):
-                raise RecordingError("an OEM holds position and velocity; it takes no other entity than /state")
-            return (to_oem(data, path, frame),)
+                what = f"an {to.upper()} holds position and velocity"
+                raise RecordingError(f"{what}; it takes no other entity than /state")
+            return (write_orbit(data, path, to, frame, craft_id, centre_id),)
         if frame:
-            raise RecordingError(f"a frame is named in an OEM; {to} holds the numbers in the frame of the run")
+            raise RecordingError(f"a frame is named in an OEM or SPK; {to} holds the numbers in the frame of the run")
         if to == "npz":
             return (written_whole(path, lambda part: write_npz(part, arrays(data, wanted))),)
         return _write_tables(data, path, to, wanted)
@@ -60,11 +73,12 @@ def _target(data: Evidence, given: FilePath | None, to: str) -> tuple[Path, str]
     out = None if given is None else Path(given)
     if not to:
         to = out.suffix.removeprefix(".").lower() if out is not None else ""
+        to = ENDINGS.get(to, to)
         if to not in FORMATS:
             raise RecordingError(f"a recording is exported to one of {', '.join(FORMATS)}; say which")
     if to not in FORMATS:
         raise RecordingError(f"cannot export to {to}; there are {', '.join(FORMATS)}")
-    name = f"{Path(data.label).stem or 'run'}.{to}"
+    name = f"{Path(data.label).stem or 'run'}.{ENDING.get(to, to)}"
     if out is None:
         return Path(name), to
     return (out / name if out.is_dir() else out), to
@@ -209,6 +223,7 @@ def arrays(data: Evidence, wanted: Sequence[str] = (), rows: np.ndarray | None =
     for name, value in data.facts.items():
         found[f"scene.{name}"] = np.asarray(value)
     found["scene.epoch"] = np.asarray("" if data.epoch is None else str(data.epoch))
+    found["scene.frame"] = np.asarray(data.frame)
     found["scene.thinned"] = np.asarray(rows is not None or data.thinned)
     return found
 
@@ -236,67 +251,3 @@ def write_npz(path: Path, values: dict[str, np.ndarray], compressed: bool = Fals
     with open(path, "wb") as file:
         save: Callable[..., None] = np.savez_compressed if compressed else np.savez
         save(file, **values)
-
-
-def to_oem(source: Source | Evidence, path: FilePath, frame: str = "") -> Path:
-    """Write position and velocity as an orbit ephemeris message.
-
-    Runs round the Sun are computed in the ecliptic of J2000: they are rotated into EME2000, or left as they are with
-    frame = "ECLIPJ2000", a name that not every reader knows. Runs round the Earth are computed in the mean equator of
-    their first date, which is turned to that of J2000; nutation, up to 19 arcsec, is neglected. Another body's frame is
-    not known: it must be named, and nothing is rotated. RecordingError without an epoch: an ephemeris message dates
-    every row.
-    """
-    from sailviz.frames import EQUATOR_FROM_ECLIPTIC, centuries_since_j2000, precession
-    from sailviz.run import gaps as spans
-    from sailviz.run.oem import ECLIPTIC, EQUATOR, Ephemeris
-    from sailviz.run.oem_writer import plain, write_oem
-
-    data = evidence(source)
-    if data.starts:
-        raise RecordingError(
-            f"{data.label} holds {len(data.starts)} flights, and an OEM one: export the recording of each by itself"
-        )
-    if "/state" not in data.entities:
-        raise RecordingError(f"{data.label} has no /state, so no position and velocity to write")
-    if data.epoch is None:
-        raise RecordingError(f"{data.label} has no epoch, and an OEM dates every row: give the scene an epoch")
-    state, body = data.table("/state"), str(data.facts.get("body", ""))
-    position, velocity = (state.columns[name] for name in STATE)
-    known = {"Sun": (EQUATOR, ECLIPTIC), "Earth": (EQUATOR,)}
-    if body not in known and not frame:
-        raise RecordingError(
-            f"which frame a run round {body or 'an unnamed body'} is in is not known: name it with frame"
-        )
-    if body in known and frame and frame not in known[body]:
-        raise RecordingError(f"a run round the {body} is written in {' or '.join(known[body])}, not in {frame}")
-    frame = frame or EQUATOR
-    comments = [str(data.facts.get("title", "")), f"made by sailviz from the scene {data.facts.get('identity', '')}"]
-    if body == "Sun" and frame == EQUATOR:
-        position, velocity = position @ EQUATOR_FROM_ECLIPTIC.T, velocity @ EQUATOR_FROM_ECLIPTIC.T
-        comments.append("computed in the ecliptic of J2000; rotated by the obliquity 84381.448 arcsec about x")
-    elif body == "Sun":
-        comments.append("ECLIPJ2000: x to the equinox of J2000, z to the pole of the ecliptic of J2000")
-    elif body == "Earth":
-        turn = precession(centuries_since_j2000(data.epoch))  # J2000 -> mean equator of the run's date
-        position, velocity = position @ turn, velocity @ turn
-        comments.append("computed in the mean equator of the first row's date; turned to J2000, nutation neglected")
-    ephemeris = Ephemeris(
-        plain(str(data.facts.get("title", ""))).upper()[:60] or "TRAJECTORY",
-        str(data.facts.get("identity", "")) or "UNKNOWN",
-        body.upper(),
-        frame,
-        "UTC",
-        data.epoch,
-        _checked_times(state, data.label),
-        position,
-        velocity,
-        tuple((row, float(state.time[row + 1] - state.time[row])) for row in spans.last_rows(state.time, data.gaps)),
-    )
-    return write_oem(Path(path), ephemeris, comments)
-
-
-def _checked_times(state: Table, label: str) -> np.ndarray:
-    if np.any(np.diff(state.time) < 0):
-        raise RecordingError(f"{label}: its times do not increase, and an OEM needs that")
-    return state.time

@@ -27,6 +27,7 @@ from sailviz.recording.entity import (
 )
 from sailviz.recording.reader import EventRow, FilePath, Recording, read
 from sailviz.run.arrays import Run
+from sailviz.sky.bodies import BODIES
 
 Source = Recording | Run | FilePath  # what can be compared and exported
 
@@ -67,6 +68,7 @@ class Evidence:
     views: Counter[tuple[str, str, str]] | None = None  # (kind, name, origin) -> how many
     picture: Callable[[], Iterator[Drawn]] | None = None  # (entity, name -> arrow column), one at a time
     starts: dict[str, float] = field(default_factory=dict)  # s, by /flight/NAME, of several flights
+    frame: str = ""  # of sailviz.frames.FRAMES, in which the numbers are; "" where that is not known
 
     @property
     def gaps(self) -> tuple[tuple[float, float], ...]:
@@ -125,6 +127,7 @@ def of_run(run: Run, label: str) -> Evidence:
         ),
         facts,
         None if setting.epoch is None else setting.epoch.astype("datetime64[ns]"),
+        frame=frame_of(setting.body.name, setting.resolved),
     )
 
 
@@ -134,8 +137,10 @@ def of_recording(recording: Recording, label: str) -> Evidence:
     sailviz = bool(recording.contract)
     entities = known if sailviz else [name for name in recording.entities if numeric(recording, name)]
     facts: dict[str, Any] = {}
+    frame = ""
     if "/scene" in recording:
         scene = recording["/scene"]
+        frame = frame_of(str(scene["body"][0]), _resolved(scene)) if "body" in scene else ""
         facts = {name: plain(scene[name][0]) for name in FACTS if name in scene}
         facts["complete"] = recording.complete
         facts |= {"gaps_s": recording.gaps.tolist()} if len(recording.gaps) else {}
@@ -151,7 +156,28 @@ def of_recording(recording: Recording, label: str) -> Evidence:
         views=views_of(recording),
         picture=(lambda: picture_of(recording)) if sailviz else None,
         starts={flight.path: flight.start for flight in recording.flights},
+        frame=frame,
     )
+
+
+def _resolved(scene: Entity) -> dict[str, Any]:
+    """Every value of the scene, as far as it can be read."""
+    try:
+        found = json.loads(str(scene["resolved"][0])) if "resolved" in scene else {}
+    except ValueError:
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def frame_of(body: str, resolved: dict[str, Any]) -> str:
+    """The frame of a run's numbers, of sailviz.frames.FRAMES: the one that its scene names, else the one in which
+    flights round a body are computed; "" where arrays came from elsewhere and where the body is of the scene's own."""
+    if resolved.get("frame"):
+        return str(resolved["frame"])
+    if body in ("Sun", "Earth"):
+        return "ecliptic-j2000" if body == "Sun" else "equator-of-date"
+    known = resolved.get("kind") != "trajectory" and any(one.name == body for one in BODIES.values())
+    return "ecliptic-j2000" if known and resolved else ""
 
 
 def truth_of(recording: Recording) -> list[str]:
@@ -210,6 +236,7 @@ def of_npz(path: Path, label: str) -> Evidence:
         {name: scene[name] for name in FACTS if name in scene},
         np.datetime64(scene["epoch"], "ns") if scene.get("epoch") else None,
         thinned=bool(scene.get("thinned", False)),
+        frame=str(scene.get("frame", "")) or frame_of(str(scene.get("body", "")), {}),
     )
 
 

@@ -15,6 +15,7 @@ from sailviz.units import UNITS
 
 from .small import SMALL, with_parts
 
+VALIDATOR = jsonschema.Draft202012Validator(schema())
 RAW = {name: tomllib.loads(path.read_text(encoding="utf-8")) for name, path in shipped_scenes().items()}
 
 
@@ -29,23 +30,21 @@ def plain(value):
 
 @pytest.mark.parametrize("name", sorted(RAW))
 def test_json_schema_accepts_shipped_scenes_and_rejects_a_misspelt_key(name):
-    validator = jsonschema.Draft202012Validator(schema())
-    validator.check_schema(schema())
     good = plain(RAW[name])
-    assert [error.message for error in validator.iter_errors(good)] == []
+    assert [error.message for error in VALIDATOR.iter_errors(good)] == []
     for where in ("start", "device", "propagation"):
         bad = copy.deepcopy(good)
         key = next(key for key in bad[where] if key != "kind")
         bad[where][key + "x"] = bad[where].pop(key)
-        assert not validator.is_valid(bad)
+        assert not VALIDATOR.is_valid(bad)
 
 
 def test_schema_wants_a_unit_and_only_one():
-    validator = jsonschema.Draft202012Validator(schema())
-    assert validator.is_valid(SMALL)
-    assert not validator.is_valid(with_parts(propagation={"duration": 10}))
-    assert not validator.is_valid(with_parts(propagation={"duration_d": 10, "duration_s": 10}))
-    assert not validator.is_valid(with_parts(propagation={}))
+    VALIDATOR.check_schema(schema())
+    assert VALIDATOR.is_valid(SMALL)
+    assert not VALIDATOR.is_valid(with_parts(propagation={"duration": 10}))
+    assert not VALIDATOR.is_valid(with_parts(propagation={"duration_d": 10, "duration_s": 10}))
+    assert not VALIDATOR.is_valid(with_parts(propagation={}))
 
 
 def test_schema_knows_every_unit_of_every_quantity():

@@ -26,6 +26,7 @@ __all__ = [
     "cylinder",
     "disc",
     "flat_sided",
+    "inverted",
     "joined",
     "moved",
     "rod",
@@ -65,6 +66,11 @@ def scaled(mesh: Trimesh, factor: float) -> Trimesh:
     copy = mesh.copy()
     copy.apply_scale(factor)
     return copy
+
+
+def inverted(mesh: Trimesh) -> Trimesh:
+    """The mesh seen from its other side. trimesh's own `invert` keeps normals that it has worked out before."""
+    return Trimesh(mesh.vertices, mesh.faces[:, ::-1], process=False)
 
 
 def vertex_normals(mesh: Trimesh) -> np.ndarray:

@@ -17,7 +17,7 @@ from sailviz.propagate.dynamics import loses_mass
 from sailviz.propagate.gauss_jackson_coefficients import LAGS
 from sailviz.propagate.gauss_jackson_steps import ANGLE, LARGEST_ECCENTRICITY, SMALLEST_TOLERANCE
 from sailviz.propulsion.devices import CALLED, ELECTRIC_SAIL, SOLAR_SAIL
-from sailviz.steering import attitude
+from sailviz.steering import attitude, by_light
 
 COLLOCATION, DOP853, GAUSS_JACKSON = "collocation", "dop853", "gauss-jackson"
 ASKED = "it was asked for"
@@ -90,14 +90,15 @@ def choose(model, position, velocity, duration, breaks=(0.0,), wanted="auto", to
 def _without_equal_steps(model) -> Choice:
     """Collocation for what is smooth, with the reason where it is not."""
     p, device, steering = model.named, model.device, model.steering
-    sail = device in (SOLAR_SAIL, ELECTRIC_SAIL)
+    sail, pushed = device in (SOLAR_SAIL, ELECTRIC_SAIL) or p.pushed.device != 0, p.pushed.device != 0
+    counted = steering == attitude.CALLED and p.by_light.law in (by_light.FACING, by_light.FRAME)
     if _kinked(p) or p.callbacks.edges:
         return Choice(DOP853, "a force read from tables or switched by the shadow has kinks")
-    if p.pushed.device or p.sky.bodies:
-        return Choice(DOP853, "other bodies pull, or the light is not at the centre")
     if p.third_body.mu != 0.0:  # of whose pull the correction between two sweeps of collocation knows nothing
         return Choice(DOP853, "a body besides the central one may be passed closely")
-    if p.callbacks.user_steering or p.callbacks.user_force or device == CALLED or steering == attitude.CALLED:
+    if p.callbacks.user_steering or p.callbacks.user_force or (device == CALLED and not pushed):
+        return Choice(DOP853, "a function of one's own may jump")
+    if steering == attitude.CALLED and not counted:
         return Choice(DOP853, "a function of one's own may jump")
     if steering in (attitude.LOCAL, attitude.LYAPUNOV) or (steering == attitude.PRIMER and device != SOLAR_SAIL):
         return Choice(DOP853, "the steering switches the thrust when it is time")

@@ -128,7 +128,7 @@ class Setting:
     """Everything about a run that is not a column of numbers."""
 
     title: str
-    family: str  # "displaced" | "spirals" | "deorbit" | "wind" | "transfers"
+    family: str  # "displaced" | "spirals" | "deorbit" | "wind" | "transfers" | "planets"
     about: str  # one or two sentences, Markdown
     look_for: tuple[str, ...]  # what to watch, Markdown, one line each
     thesis: str  # section of the thesis, "" where none applies

@@ -59,7 +59,7 @@ class Scene(Section):
     about: str = ""
     thesis: str = ""
     look_for: list[str] = []
-    family: Literal["displaced", "spirals", "deorbit", "wind", "transfers"] | None = None
+    family: Literal["displaced", "spirals", "deorbit", "wind", "transfers", "planets"] | None = None
     epoch: Moment | None = None
     ephemeris: EphemerisName = "mean-elements"
     body: CENTRE | CustomBody = "sun"

@@ -17,6 +17,7 @@ from sailviz.environment.magnetosphere import Parameters as Magnetosphere
 from sailviz.propagate import stepping
 from sailviz.propagate.patience import Patience
 from sailviz.run.arrays import Reference, Setting, Shell
+from sailviz.scene.sky import is_sail, light_away
 from sailviz.scene.start import DesignedStart
 from sailviz.simulation.accuracy import accuracy_in_words
 from sailviz.simulation.bodies import epoch_of
@@ -82,6 +83,8 @@ def family_of(scene) -> str:
     """The family in whose way a scene is drawn: its own word, or what its sections suggest."""
     if scene.family:
         return str(scene.family)
+    if is_sail(scene) and light_away(scene):
+        return "planets"
     if scene.body == "earth":
         return "deorbit"
     if scene.environment.solar_wind.kind != "steady" or scene.ensemble or scene.chaos:

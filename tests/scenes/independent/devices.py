@@ -7,6 +7,7 @@ from independent.constants import AU, EPSILON, MU_SUN
 from independent.designed_orbits import designed
 from independent.film import film_force, film_of
 from independent.plasma_brake import brake
+from independent.sky import from_light, sunlight, wind_blows
 from independent.steering import normal
 
 
@@ -26,16 +27,22 @@ def solar_sail(scene):
     elif craft.lightness_number is not None:
         ac = film[3] * craft.lightness_number * MU_SUN / AU**2
     else:
-        ac = film[3] * 2 * 4.563e-6 * craft.area / craft.mass * sum(film[:3])
+        said = scene.light
+        pressure = 4.563e-6 if said is None or said.pressure is None else said.pressure
+        if said is not None and said.distance is not None and said.pressure is not None:
+            pressure *= (said.distance / AU) ** 2
+        ac = film[3] * 2 * pressure * craft.area / craft.mass * sum(film[:3])
 
     def push(t, r, v, mass):
-        n, size = normal(scene, t, r, v), np.linalg.norm(r)
-        cosine = n @ r / size
+        n, out = normal(scene, t, r, v), from_light(scene, t, r)
+        size = np.linalg.norm(out)
+        cosine = n @ out / size
         if cosine <= 0:
             return np.zeros(3), 0.0
         light, along = film_force(film, cosine)
         ac_now = designed(scene, t)[2] if ac == "as designed" else ac
-        return ac_now * (AU / size) ** 2 * (light * r / size + along * n), 0.0
+        ac_now *= sunlight(scene, t, r)
+        return ac_now * (AU / size) ** 2 * (light * out / size + along * n), 0.0
 
     return push
 
@@ -48,9 +55,10 @@ def electric_sail(scene):
         ac = craft.tethers * craft.tether_length * sigma / craft.mass
 
     def push(t, r, v, mass):
-        n, size = normal(scene, t, r, v), np.linalg.norm(r)
-        r_hat = r / size
-        if not n.any():
+        n, out = normal(scene, t, r, v), from_light(scene, t, r)
+        size = np.linalg.norm(out)
+        r_hat = out / size
+        if not n.any() or not wind_blows(scene, t, r):
             return np.zeros(3), 0.0
         if craft.model == "final":
             ac_now = designed(scene, t)[2] if ac == "as designed" else ac

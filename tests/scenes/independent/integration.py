@@ -10,7 +10,8 @@ from independent.designed_orbits import third_body
 from independent.devices import device
 from independent.low_orbit import air_drag, oblate
 from independent.primers import soft_edges
-from independent.steering import table
+from independent.sky import bodies_pull, shown_area
+from independent.steering import normal, table
 from independent.thrust_history import schedule, smoothed
 from scipy.integrate import solve_ivp
 
@@ -98,9 +99,11 @@ def right_hand_side(scene, acceleration, factor, latest):
         if around.j2:
             a = a + oblate(around, r)
         if drag is not None:
-            a = a + drag(t, r, v, mass)
+            fixed = scene.device.drag_area
+            area = shown_area(scene, r, v, normal(scene, t, r, v)) if fixed == "attitude" else fixed
+            a = a + drag(t, r, v, mass, area)
         rate = 0.0
-        a = a + third_body(scene, t, r)
+        a = a + third_body(scene, t, r) + bodies_pull(scene, t, r)
         if factor and acceleration is not None:
             throttle = getattr(scene.steering, "throttle", None)
             share = factor * (table(scene.steering, throttle, min(t, latest)) if throttle else 1.0)

@@ -133,7 +133,7 @@ def air_drag(scene):
         noons = np.array([0.0, 86400.0]) + (before - begin).total_seconds()
         tables = [air_table(levels, air.ap, (before + timedelta(days=i)).date()) for i in range(2)]
 
-    def drag(t, r, v, mass):
+    def drag(t, r, v, mass, area):
         if air.kind == "exponential":
             density = air.density * np.exp(
                 (air.reference_altitude - np.linalg.norm(r) + body(scene)[1]) / air.scale_height
@@ -143,7 +143,7 @@ def air_drag(scene):
             log = [np.interp(solar_flux(scene, t), levels, table(where).ravel()) for table in tables]
             density = np.exp(np.interp(t, noons, log))
         u = v - np.cross(spin_of_earth(scene), r)
-        return -0.5 * density * craft.drag_coefficient * craft.drag_area / mass * np.linalg.norm(u) * u
+        return -0.5 * density * craft.drag_coefficient * area / mass * np.linalg.norm(u) * u
 
     return drag
 

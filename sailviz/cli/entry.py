@@ -28,6 +28,7 @@ COMMANDS = {  # name, which is also that of the module -> function there
     "info": "info",
     "list": "list_scenes",
     "picture": "picture",
+    "report": "report",
     "run": "run",
     "schema": "schema",
     "show": "show",

@@ -166,6 +166,9 @@ def column(run: Run, name: str) -> Curve:
     return Curve(name, f"{words} [{unit}]" if unit else words, color, values, logarithmic=dense)
 
 
+NOISE = 1e-9  # of an angle or an eccentricity: what changes by less is rounding
+
+
 def telling(run: Run) -> list[str]:
     """What is drawn where nobody says: of the usual quantities those that change by more than 2 %."""
     low = "mean_altitude" if run.setting.body.name != "Sun" and run.setting.body.radius > 0 else "radius"
@@ -173,7 +176,8 @@ def telling(run: Run) -> list[str]:
     found = []
     for name in wanted:
         values = curve_of(run, name).values if name != "pitch" or np.isfinite(run.attitude.pitch).any() else np.zeros(1)
-        if np.nanmax(values) - np.nanmin(values) > 0.02 * np.nanmax(np.abs(values)):
+        least = NOISE if name in ("pitch", "inclination", "eccentricity") else 0.0
+        if np.nanmax(values) - np.nanmin(values) > max(0.02 * np.nanmax(np.abs(values)), least):
             found.append(name)
     return found[:4] or [low]
 

@@ -1,0 +1,204 @@
+"""Reports: what a page says is what was recorded, it stands alone, and nothing that people wrote becomes markup."""
+
+import base64
+import hashlib
+import re
+import sys
+from html.parser import HTMLParser
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from click.testing import CliRunner
+
+from sailviz import load_scene, read, record, simulate, sweep
+from sailviz.cli import main
+from sailviz.constants import RADIUS_EARTH, YEAR
+from sailviz.recording.views.screenshot import has_vulkan
+from sailviz.reports.disposal import RULES, Descent, shares_within
+from sailviz.reports.flight import flight_page
+from sailviz.reports.sweep import sweep_page
+from sailviz.words import duration
+
+WICKED = '<img src=x onerror="alert(1)"> & {{ 7 * 7 }}'
+DESCENT = {
+    "title": WICKED,
+    "epoch": "2030-03-20T12:00:00Z",
+    "body": "earth",
+    "start": {"kind": "circular", "altitude_km": 300, "inclination_deg": 60, "raan_deg": 20},
+    "device": {
+        "kind": "plasma-brake", "tether_length_m": 2000, "mass_kg": 5, "drag_area_m2": 0.2, "drag_coefficient": 2.2
+    },
+    "environment": {
+        "ionosphere": {
+            "kind": "exponential-force", "force_per_length_nN_m": 300, "reference_altitude_km": 300,
+            "scale_height_km": 500,
+        },
+        "atmosphere": {
+            "kind": "exponential", "reference_altitude_km": 300, "density_kg_m3": 2e-11, "scale_height_km": 50,
+        },
+    },
+    "propagation": {"duration_d": 40, "outputs": 200},
+    "event": [{"kind": "altitude", "name": "re-entry", "altitude_km": 120, "sense": "down", "stop": True}],
+    "expect": [{"quantity": "altitude_km", "at": "end", "value": 120, "within": 0.01}],
+}  # fmt: skip
+
+
+class Markup(HTMLParser):
+    """Names of all elements, addresses in them, and the words of the cells of tables."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.tags, self.addresses, self.words = set(), [], []
+        self.feed(page)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.add(tag)
+        self.addresses += [value for name, value in attrs if name in ("src", "href", "action", "data", "srcset")]
+        assert not [name for name, _ in attrs if name.startswith("on")]
+
+    def handle_data(self, data):
+        self.words.append(data.strip())
+
+
+@pytest.fixture(scope="module")
+def fallen(tmp_path_factory):
+    """A recorded descent: its path."""
+    path = tmp_path_factory.mktemp("fallen") / "fallen.rrd"
+    record(simulate(load_scene(DESCENT)), path)
+    return path
+
+
+def sentences(section):
+    return " ".join(section.sentences)
+
+
+def test_the_answer_is_the_end_of_the_recorded_flight(fallen):
+    page = flight_page(fallen, load_scene(DESCENT), pictures=False, others=False)
+    state = read(fallen)["/state"]
+    height = np.linalg.norm(state["position_m"][-1]) - RADIUS_EARTH
+    assert height == pytest.approx(120e3, abs=1)
+    assert page.answer[0] == f"It is down after {duration(float(state['time_s'][-1]))} (the flight ends 120 km high)."
+    assert "5 years after the start of this flight: kept" in page.answer[1]
+    assert "1 of 1 expectations" in page.answer[-1]
+    assert any("casualty risk" in sentences(section) for section in page.sections)
+
+
+def test_without_its_brake_the_craft_stays_up_longer(fallen):
+    page = flight_page(fallen, load_scene(DESCENT), pictures=False)
+    beside = next(table for section in page.sections for table in section.tables if table.caption == "Beside it")
+    braked, alone = beside.rows
+    assert alone[0].startswith("drag alone")
+    days = [float(re.search(r"after ([\d.]+) d", words)[1]) for words in (braked[1], alone[1])]
+    free = simulate(load_scene(DESCENT | {"device": {"kind": "none", "mass_kg": 5, "drag_area_m2": 0.2}, "expect": []}))
+    assert days[1] == pytest.approx(free.time[-1] / 86400, rel=1e-5)
+    assert days[1] > 1.2 * days[0]
+    assert "other Suns" in sentences(next(s for s in page.sections if s.heading == "Disposal"))
+
+
+def test_the_swept_product_is_area_times_time(fallen):
+    page = flight_page(fallen, load_scene(DESCENT), pictures=False, others=False)
+    said = sentences(next(section for section in page.sections if section.heading == "Disposal"))
+    time = float(read(fallen)["/state"]["time_s"][-1])
+    expected = (0.2 + 2000 * 50e-6) * time / YEAR
+    assert float(re.search(r"times time: ([\d.e-]+) m² yr", said)[1]) == pytest.approx(expected, rel=1e-3)
+
+
+def test_the_page_stands_alone_and_what_people_wrote_stays_text(fallen, tmp_path):
+    out = tmp_path / "page.html"
+    result = CliRunner().invoke(main, ["report", str(fallen), "-o", str(out), "--no-pictures", "--alone"])
+    assert result.exit_code == 0, result.stderr
+    page = out.read_text()
+    markup = Markup(page)
+    assert not markup.tags & {"script", "img", "iframe", "object", "link", "form", "base"}
+    assert markup.addresses == []
+    assert WICKED in markup.words  # as it was written, and not as markup
+    assert "49" not in markup.words
+    assert "http" not in re.sub(r'http-equiv="Content-Security-Policy"', "", page)
+    assert hashlib.sha256(fallen.read_bytes()).hexdigest() in markup.words
+
+
+@pytest.mark.skipif(not has_vulkan(), reason="no Vulkan driver: apt-get install libvulkan1 mesa-vulkan-drivers")
+def test_pictures_are_in_the_page_itself(fallen, tmp_path):
+    out = tmp_path / "page.html"
+    assert CliRunner().invoke(main, ["report", str(fallen), "-o", str(out), "--alone"]).exit_code == 0
+    addresses = Markup(out.read_text()).addresses
+    assert len(addresses) == 4
+    for address in addresses:
+        data = base64.b64decode(address.removeprefix("data:image/png;base64,"))
+        assert data.startswith(b"\x89PNG")
+        assert 300 < int.from_bytes(data[16:20], "big") <= 1600
+
+
+def test_a_scene_is_flown_for_its_report_and_its_values_are_told(tmp_path):
+    out = tmp_path / "page.html"
+    words = ["report", "spirals/logarithmic", "-o", str(out), "--no-pictures", "--set", "propagation.outputs=50"]
+    result = CliRunner().invoke(main, words)
+    assert result.exit_code == 0, result.stderr
+    told = Markup(out.read_text()).words
+    assert "propagation.outputs" in told
+    assert told[told.index("propagation.outputs") + 2] == "50" or "50" in told
+    assert "Flown:" in result.stdout
+    assert "Disposal" not in told
+
+
+def test_a_limit_is_kept_missed_or_open_as_far_as_was_flown():
+    (_, five, _), (_, many, _) = RULES
+    assert five == 5 * YEAR
+    assert many == 25 * YEAR
+    down = Descent(4 * YEAR, True, 120e3, "re-entry")
+    late = Descent(6 * YEAR, True, 120e3, "re-entry")
+    high = Descent(6 * YEAR, False, 500e3, "")
+    assert [d.verdict(five) for d in (down, late, high)] == ["kept", "not kept", "not kept"]
+    assert down.verdict(many) == late.verdict(many) == "kept"
+    assert high.verdict(many) == "open: only 6 yr were flown"
+
+
+def test_flights_that_are_still_up_count_as_late_only_once_their_time_shows_it():
+    known = np.array([1.0, 4.0, 6.0, np.nan, np.nan])
+    least = np.array([np.nan, np.nan, np.nan, 3.0, 7.0])
+    assert shares_within(known, least, 5.0) == (2, 2, 1)
+
+
+def test_a_sweep_of_descents_says_how_many_are_down_and_how_many_still_fly(tmp_path):
+    """With the smaller drag areas the duration of the scene does not suffice."""
+    scene = DESCENT | {"expect": [], "propagation": {"duration_d": 4, "outputs": 20}}
+    found = sweep(
+        scene, {"device.drag_area_m2": [0.05, 0.1, 0.5, 1.0]}, report=["time_d@re-entry"], engine="serial",
+        path=tmp_path / "fallen.parquet",
+    )  # fmt: skip
+    page = sweep_page(found.to_arrow(), load_scene(scene))
+    times = found.table["time_d@re-entry"]
+    up = int(np.isnan(times).sum())
+    assert 0 < up < 4
+    assert f"{up:,} of 4 flights ({up / 4:.1%}) had not come there" in page.answer[1]
+    limits = next(section for section in page.sections if section.heading == "Disposal").tables[0]
+    assert limits.rows[0][1:4] == (f"{4 - up} ({1 - up / 4:.1%})", "0 (0.0%)", f"{up} ({up / 4:.1%})")
+    out = tmp_path / "fallen.html"
+    result = CliRunner().invoke(main, ["report", str(tmp_path / "fallen.parquet"), "-o", str(out)])
+    assert result.exit_code == 0, result.stderr
+    assert page.answer[0] in result.stdout
+
+
+def test_what_is_no_source_of_a_report_is_refused_and_nothing_is_written(fallen, tmp_path, monkeypatch):
+    pq.write_table(pa.table({"a": [1]}), tmp_path / "other.parquet")
+    (tmp_path / "cut.parquet").write_bytes(b"PAR1 and no more")
+    (tmp_path / "words.rrd").write_text("words")
+    out = tmp_path / "page.html"
+
+    def refused(*words):
+        result = CliRunner().invoke(main, ["report", *map(str, words)])
+        assert result.exit_code == 2
+        assert "Traceback" not in result.stderr
+        assert not out.exists()
+        return result.stderr
+
+    assert "does not say of which sweep" in refused(tmp_path / "other.parquet", "-o", out)
+    assert "cannot be read as the table" in refused(tmp_path / "cut.parquet", "-o", out)
+    assert "not a Rerun recording" in refused(tmp_path / "words.rrd", "-o", out)
+    assert "spirals/logarithmic" in refused("spirals/logaritmic", "-o", out)
+    assert "was flown already" in refused(fallen, "-o", out, "--set", "propagation.outputs=5")
+    assert "must end in .html" in refused(fallen, "-o", tmp_path / "page.pdf")
+    monkeypatch.setitem(sys.modules, "jinja2", None)
+    assert "sailviz[report]" in refused(fallen, "-o", out)

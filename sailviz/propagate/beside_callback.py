@@ -13,6 +13,7 @@ import numpy as np
 from sailviz.compiled import STATE, called, entry, inlined
 from sailviz.environment import sky
 from sailviz.propagate.callbacks import Callback, callback
+from sailviz.propagate.force_callback import growth
 from sailviz.propagate.parameters import PARAMETERS, array_at, record_at
 from sailviz.propagate.sky_callback import in_wind, sunlit_share
 from sailviz.propulsion.devices import ELECTRIC_SAIL, SOLAR_SAIL
@@ -23,8 +24,8 @@ from sailviz.steering import attitude, by_light
 
 # places of the numbers: a kind of propulsion.devices, whether there is a sky, a kind of steering.attitude (CALLED: in
 # the frame of the light), its direction's three components, whether that frame counts from the orbit's axis, up to four
-# parameters of the device, how many factors there are
-KIND, UNDER_SKY, STEERING, DIRECTION, BY_ORBIT, DEVICE, ROWS, TIMES = 0, 1, 2, 3, 6, 7, 11, 12
+# parameters of the device, the mass kg at which a sail has its strength (0: it stays), how many factors there are
+KIND, UNDER_SKY, STEERING, DIRECTION, BY_ORBIT, DEVICE, MASS, ROWS, TIMES = 0, 1, 2, 3, 6, 7, 11, 12, 13
 
 
 def numbers(
@@ -34,13 +35,15 @@ def numbers(
     direction: Sequence[float],
     by_orbit: bool,
     under_sky: bool,
+    mass: float,
     times: np.ndarray,
     factors: np.ndarray,
 ) -> np.ndarray:
-    """The numbers (n,) of one device. times (k,) s, increasing, the first not after the start, factors (k,)."""
+    """The numbers (n,) of one device. mass : kg, at which a sail that pushes with a force has its strength, else 0;
+    times (k,) s, increasing, the first not after the start, factors (k,)."""
     found = np.zeros(TIMES)
-    found[KIND], found[UNDER_SKY], found[STEERING], found[BY_ORBIT], found[ROWS] = (
-        kind, under_sky, steering, by_orbit, len(times),
+    found[KIND], found[UNDER_SKY], found[STEERING], found[BY_ORBIT], found[MASS], found[ROWS] = (
+        kind, under_sky, steering, by_orbit, mass, len(times),
     )  # fmt: skip
     found[DIRECTION : DIRECTION + len(direction)] = direction
     found[DEVICE : DEVICE + len(parameters)] = parameters
@@ -105,15 +108,15 @@ def push(t, x, y, z, vx, vy, vz, m, p, tables, own):
         d0, d1, d2, d3 = own[DEVICE], own[DEVICE + 1], own[DEVICE + 2], own[DEVICE + 3]
         c = ux * nx + uy * ny + uz * nz
         if kind == SOLAR_SAIL:
-            share = factor
+            share = factor * growth(own[MASS], m)
             if own[UNDER_SKY] != 0.0:
-                share = factor * sunlit_share(x, y, z, p, tables)
+                share = share * sunlit_share(x, y, z, p, tables)
             if share > 0.0:
                 ax, ay, az = sail_force(ux, uy, uz, near, nx, ny, nz, c, share * d0, d1, d2, d3)
         elif kind == ELECTRIC_SAIL:
-            share = factor
+            share = factor * growth(own[MASS], m)
             if own[UNDER_SKY] != 0.0:
-                share = factor * in_wind(x, y, z, p, tables)
+                share = share * in_wind(x, y, z, p, tables)
             if share > 0.0:
                 ax, ay, az = esail_force(ux, uy, uz, near, nx, ny, nz, c, share * d0, int(d1), d2)
         else:

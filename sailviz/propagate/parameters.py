@@ -49,6 +49,7 @@ class Pushed(NamedTuple):
     device: int = 0  # of propulsion.devices
     drag_area: float = 0.0  # m2, drag coefficient times the area that faces the flow; 0: no drag by attitude
     edge_area: float = 0.0  # m2, the same of what a sail that stands edge-on shows
+    mass: float = 0.0  # kg, at which the sail has its strength, a force over the mass; 0: its strength stays
 
 
 class Callbacks(NamedTuple):

@@ -13,6 +13,7 @@ from sailviz.environment.eclipse import CYLINDER, NO_SHADOW, cylindrical
 from sailviz.environment.shadow import lit_share
 from sailviz.propagate.callbacks import Callback, callback
 from sailviz.propagate.dynamics import direction
+from sailviz.propagate.force_callback import growth
 from sailviz.propagate.low_orbit_callback import air_density, surroundings
 from sailviz.propagate.parameters import PARAMETERS, array_at, record_at
 from sailviz.propagate.primer_callback import primer, throttle
@@ -176,13 +177,13 @@ def _thrust(time, state, parameters, own, number, out):
         share = sunlit_share(x, yy, z, p, tables)
         if share > 0.0:
             sail = p.solar_sail
-            k = number * share * sail.strength
+            k = number * share * growth(p.pushed.mass, y[6]) * sail.strength
             a[0], a[1], a[2] = sail_force(ux, uy, uz, inverse, nx, ny, nz, c, k, sail.b1, sail.b2, sail.b3)
     elif p.pushed.device == ELECTRIC_SAIL:
         blows = in_wind(x, yy, z, p, tables)
         if blows > 0.0:
             esail = p.electric_sail
-            k = number * esail.characteristic_acceleration
+            k = number * growth(p.pushed.mass, y[6]) * esail.characteristic_acceleration
             model = int(esail.model)
             a[0], a[1], a[2] = esail_force(ux, uy, uz, inverse, nx, ny, nz, c, k, model, esail.pitch_limit)
 

@@ -211,6 +211,13 @@ class NoDevice(Device):
 Devices = Annotated[SolarSail | ElectricSail | PlasmaBrake | Thruster | NoDevice, Field(discriminator="kind")]
 
 
+def by_force(device: Device) -> bool:
+    """Whether a sail's strength comes of a force, by its area or its hardware, and the mass of the craft."""
+    if isinstance(device, SolarSail):
+        return device.by_area
+    return isinstance(device, ElectricSail) and device.characteristic_acceleration is None
+
+
 def control_of(device: Device) -> PressureControl | DistanceControl | ElectrochromicControl | None:
     """How a device answers to wind or sunlight that varies; None where it does not."""
     return device.control if isinstance(device, (SolarSail, ElectricSail)) else None

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from sailviz import frames
-from sailviz.propagate import beside_callback, dynamics
-from sailviz.propulsion.devices import THRUSTER
+from sailviz.propagate import beside_callback, dynamics, force_callback
+from sailviz.propagate.parameters import Pushed
+from sailviz.propulsion.devices import CALLED, THRUSTER
 from sailviz.run.arrays import Thrust
-from sailviz.scene.device import ElectricSail, SolarSail
+from sailviz.scene.device import ElectricSail, SolarSail, Thruster, by_force
 from sailviz.scene.environment import Environment
 from sailviz.simulation.device import DEVICES
 from sailviz.simulation.lowered import Array, Flight, LoweredDevice, Switches
@@ -80,6 +81,27 @@ def named_switches(scene: Scene, switches: Switches) -> Switches:
     return _called(name_of(scene.device), switches) if scene.beside else switches
 
 
+def mass_of_strength(scene: Scene, device: Devices) -> float:
+    """kg, at which a sail has the strength that its area or its hardware makes, where propellant burns beside it; else
+    0, and its acceleration stays as it is."""
+    burns = any(isinstance(one, Thruster) and one.specific_impulse is not None for one in scene.devices)
+    return device.mass or 0.0 if burns and by_force(device) else 0.0
+
+
+def by_its_force(scene: Scene, device: LoweredDevice, overhead: dict[str, Any]) -> tuple[LoweredDevice, dict[str, Any]]:
+    """The first device, and the keywords of `dynamics.model` beside it, so that a sail pushes with its force while
+    the mass of the craft falls. overhead : keywords of its sky."""
+    mass = mass_of_strength(scene, scene.device)
+    if mass == 0.0:
+        return device, overhead
+    sky: dict[str, Any] = overhead.get("sky", {})
+    pushed = sky.get("pushed", Pushed())
+    if device.kind != CALLED:  # as it is where a sky pushes it
+        pushed = pushed._replace(device=device.kind)
+        device = device._replace(kind=CALLED, callback=force_callback.sail_by_force())
+    return device, overhead | {"sky": sky | {"pushed": pushed._replace(mass=mass)}}
+
+
 def devices_beside(
     scene: Scene, position: Array, velocity: Array, times: list[Schedule], under_sky: bool
 ) -> list[BesideDevice]:
@@ -100,6 +122,7 @@ def devices_beside(
             direction,
             bool(law.by_orbit),
             under_sky,
+            mass_of_strength(scene, device),
             when.breaks,
             when.factors,
         )

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from sailviz.simulation.quasi_circular import QuasiCircular
     from sailviz.simulation.start import Design
 from sailviz.simulation.approximations import first_orders, quasi_circular_decay
-from sailviz.simulation.beside import BesideDevice, devices_beside, named_switches, schedules
+from sailviz.simulation.beside import BesideDevice, by_its_force, devices_beside, named_switches, schedules
 from sailviz.simulation.bodies import body_of, epoch_of
 from sailviz.simulation.device import device_of, strength_or_none
 from sailviz.simulation.events import latest_end, quantities_watched, watched
@@ -104,6 +104,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
     steered = steering_of(scene.steering).lower(scene.steering, flight)
     sky = sky_of(scene, body, epoch_of(scene))
     device, steered, overhead = under_sky(sky, device, steered)
+    device, overhead = by_its_force(scene, device, overhead)
     addresses, keep = _own_functions(steering=steering, force=force)
     if steering is not None:
         steered = LoweredSteering(attitude.USER)

@@ -11,7 +11,7 @@ from sailviz.scene.conflicts import craft, departures
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.records import start_of
 from sailviz.scene.conflicts.sky import light, steered_by_light
-from sailviz.scene.device import Devices, ElectricSail, NoDevice, PlasmaBrake, SolarSail, Thruster, control_of
+from sailviz.scene.device import Devices, NoDevice, PlasmaBrake, Thruster, control_of
 from sailviz.words import duration, shown
 
 if TYPE_CHECKING:
@@ -48,14 +48,6 @@ def together(scene: Scene) -> Faults:
             found.append((f"{name}[0]", "an ensemble flies one device"))
     if scene.approximation:
         found.append(("approximation[0]", "an analytic solution knows one device"))
-    devices = (scene.device, *scene.beside)
-    burns = any(isinstance(device, Thruster) and device.specific_impulse is not None for device in devices)
-    if burns and any(_by_the_mass(device) for device in devices):
-        words = (
-            "a sail given by its area or its hardware is pushed the harder the more propellant a thruster has burnt, "
-            "which is not flown: give its characteristic_acceleration, which stays"
-        )
-        found.append(("device", words))
     for i, event in enumerate(scene.event):
         for stem in (stem for stem in event.quantities() if stem in OF_ALL_TOGETHER):
             words = f"{stem.replace('_', ' ')} is that of all devices together, which no event watches"
@@ -85,13 +77,6 @@ def beside_conflicts(scene: Scene) -> Faults:
         if not found:
             found += [(f"{place}{where.removeprefix('device')}", what) for where, what in _alone(scene.alone(device))]
     return found
-
-
-def _by_the_mass(device: Devices) -> bool:
-    """Whether a sail's acceleration comes of a force and the mass of the craft."""
-    if isinstance(device, SolarSail):
-        return device.by_area
-    return isinstance(device, ElectricSail) and device.characteristic_acceleration is None
 
 
 def _kinds(scene: Scene, device: Devices, place: str) -> Faults:

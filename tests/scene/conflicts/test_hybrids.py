@@ -176,22 +176,6 @@ def test_identities_of_scenes_with_one_device_know_nothing_of_lists() -> None:
     assert "name" not in one.resolved()["device"]
 
 
-@pytest.mark.parametrize(
-    "sail",
-    [
-        {"kind": "solar-sail", "area_m2": 1000},
-        {"kind": "electric-sail", "tethers": 20, "tether_length_km": 10, "voltage_kV": 20},
-    ],
-)
-def test_a_sail_that_would_speed_up_as_propellant_burns_is_refused_and_not_flown_at_its_first_strength(sail) -> None:
-    burning = {"kind": "thruster", "thrust_mN": 60, "specific_impulse_s": 1500, "mass_kg": 400, "steering": OWN}
-    assert any("is not flown: give its characteristic_acceleration" in fault for fault in faults(scene(sail, burning)))
-    massless = {"kind": "thruster", "thrust_mN": 60, "mass_kg": 400, "steering": OWN}
-    load_scene(scene(sail, massless))
-    stated = {"kind": sail["kind"], "characteristic_acceleration_mm_s2": 0.3}
-    load_scene(scene(stated, burning))
-
-
 @pytest.mark.parametrize("event", [{"cone_deg": 20}, {"thrust_acceleration_mm_s2": 1}])
 def test_no_event_watches_the_first_device_alone_in_the_name_of_all(event) -> None:
     told = faults({**scene(SAIL, THRUSTER), "event": [{"radius_au": 1.1}, event]})

@@ -105,18 +105,18 @@ class Flown(NamedTuple):
     nearest: list[tuple[int, float, float]]
 
 
-def fly(steps: Steps, watch: bool = True) -> Flown:
+def fly(steps: Steps, watch: bool = True, until: Floats | None = None) -> Flown:
     """Fly steps to rounding, each in pieces whose length follows from their error. watch : look for the closest
-    approaches too."""
-    n = len(steps.span)
+    approaches too; until (n,) s : fly only so far into each."""
+    n, end = len(steps.span), steps.span if until is None else until
     time, y, pieces = np.zeros(n), steps.state.copy(), np.zeros(n, np.int64)
     nearest: list[tuple[int, float, float]] = []
     with np.errstate(all="ignore"):
-        wish = np.minimum(steps.span, _longest(y))
-        active = np.flatnonzero(steps.span > 0)
+        wish = np.minimum(end, _longest(y))
+        active = np.flatnonzero(end > 0)
         while len(active):
             some = steps.at(active)
-            h = np.minimum(wish[active], some.span - time[active])
+            h = np.minimum(wish[active], end[active] - time[active])
             new, error = _extrapolated(some, time[active], y[active], h)
             good = error <= TOLERANCE
             factor = np.clip(0.9 * (TOLERANCE / np.maximum(error, 1e-17)) ** (1 / 11), 0.1, 3.0)
@@ -132,7 +132,7 @@ def fly(steps: Steps, watch: bool = True) -> Flown:
             pieces[active] += 1
             lost = pieces[active] >= MOST_PIECES
             y[active[lost]] = np.nan
-            active = active[~lost & (steps.span[active] - time[active] > 1e-9)]
+            active = active[~lost & (end[active] - time[active] > 1e-9)]
     return Flown(y, nearest)
 
 

@@ -384,7 +384,10 @@ class Lanes:
             return []
         names = [phase.name for phase in reached(setting)]
         colors = [color for _, color in words_and_colors(setting)]
-        picture.log_static(lane_path("phase"), rr.StateConfiguration(values=names, labels=names, colors=colors))
+        kinds = dict(zip(names, colors, strict=True))
+        labels = list(kinds)
+        configuration = rr.StateConfiguration(values=labels, labels=labels, colors=list(kinds.values()))
+        picture.log_static(lane_path("phase"), configuration)
         number, time = zip(*self._switches, strict=True)
         index = timelines.time_columns(setting, list(number), list(time))
         picture.log_columns(lane_path("phase"), index, rr.StateChange.columns(state=names[: len(self._switches)]))

@@ -6,9 +6,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from sailviz.constants import YEAR
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.arrival_plane import MILLI_AU
-from sailviz.recording.drawing.phrases import clock
+from sailviz.recording.drawing.phrases import LONG, clock
 from sailviz.run import gaps
 from sailviz.run.arrays import Event, Setting
 
@@ -45,6 +46,8 @@ def event_line(event: Event) -> str:
     if " at t = " in event.name:
         return event.name
     time = abs(event.time)
+    if time > LONG:
+        return f"year {event.time / YEAR:.4g}: {event.name}"
     if time < 3600:
         return f"{event.time:.4g} s: {event.name}"
     size, word = (86400.0, "day") if time >= 86400 else (3600.0, "hour")

@@ -25,6 +25,7 @@ from sailviz.recording.drawing.ensembles import log_ensembles
 from sailviz.recording.drawing.flight_curves import FlightCurves, curves_beside, log_flight_curves
 from sailviz.recording.drawing.flight_words import about_together, log_now_together, span_of
 from sailviz.recording.drawing.flights import Flight, story_beside
+from sailviz.recording.drawing.landmarks import VIOLATION
 from sailviz.recording.drawing.layout import Layout, Space, Span
 from sailviz.recording.drawing.log import Index, Picture
 from sailviz.recording.drawing.low_orbit import log_low_orbit, orbit_words
@@ -82,8 +83,12 @@ class Drawing:
         self._events += [] if beside else events
         texts = [event_line(event) for event in events]
         levels = [
-            rr.TextLogLevel.WARN if "interrupted" in text or " at t = " in text else rr.TextLogLevel.INFO
-            for text in texts
+            rr.TextLogLevel.ERROR
+            if event.name.startswith(VIOLATION)
+            else rr.TextLogLevel.WARN
+            if "interrupted" in text or " at t = " in text
+            else rr.TextLogLevel.INFO
+            for event, text in zip(events, texts, strict=True)
         ]
         self._picture.log_columns("/log", index, rr.TextLog.columns(text=texts, level=levels))
 

@@ -30,6 +30,7 @@ MOST_EVENTS = 2  # named between start and end
 THERE = 0.02  # of S: closer than this is the same place or the same line
 MEET = 0.06  # of S: start and end closer than this have one name
 WAYS_WITHIN = 1.5  # of S: farther away the way of a moon is not drawn
+FLYBY, VIOLATION = "flyby of ", "violation"  # how events begin that have marks of their own
 NEAR_END = 0.97  # of the time from which an event is what the flight ends with
 
 
@@ -172,7 +173,7 @@ def marked_events(story: Story) -> list[tuple[str, np.ndarray]]:
     """Words and places of what is marked between the start and the end, and of the end in the event's own words: the
     distance of Mars is not Mars."""
     duration, first = story.duration, float(story.time[0])
-    events = [e for e in story.events if not at_a_switch(story.setting, e)]
+    events = [e for e in story.events if not at_a_switch(story.setting, e) and not is_passage(e)]
     inside = [e for e in events if 0.02 * duration < e.time - first < NEAR_END * duration]
     last = [e for e in events if e.time - first >= NEAR_END * duration]
     named = [(e.name, e) for e in told_once(inside)[:MOST_EVENTS]]
@@ -180,6 +181,11 @@ def marked_events(story: Story) -> list[tuple[str, np.ndarray]]:
     found = [(f"{words}, {on_day(e.time - first, duration)}", place_of(story, e)) for words, e in named]
     found.append((f"{end_words(story, last)}, {on_day(duration, duration)}", story.position[-1]))
     return found
+
+
+def is_passage(event: Event) -> bool:
+    """Whether an event is a body passed or a rule broken, which `passages.py` marks."""
+    return event.name.startswith((FLYBY, VIOLATION))
 
 
 def place_of(story: Story, event: Event) -> np.ndarray:

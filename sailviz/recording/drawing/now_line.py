@@ -74,8 +74,9 @@ def gap_texts(story: Story) -> list[str]:
 def distance_words(story: Story) -> list[str]:
     """From the Sun, or from another body without a surface."""
     body = story.setting.body.name
-    whose = "the Sun" if body == "Sun" else "the centre" if not story.setting.body.radius else body_words(body)
     run, unit_name = story.samples.run, story.frame.unit_name
+    named = body == "Sun" or story.setting.body.radius or unit_name == "au"
+    whose = body_words(body) if named else "the centre"
     away = np.linalg.norm(run.position, axis=1) / story.frame.unit
     if unit_name.endswith("radii"):
         return [f"{km:,.0f} km from the centre of {whose}" for km in (away * story.frame.unit / 1e3).tolist()]

@@ -20,15 +20,17 @@ def reached(setting: Setting) -> list[Phase]:
 
 
 def words_and_colors(setting: Setting) -> list[tuple[str, Color]]:
-    """The word of a colour and the colour of each phase that was reached, in their order."""
+    """The word of a colour and the colour of each phase that was reached; phases of one name have one."""
     known = list(style.PHASES.items())
-    return [known[i % len(known)] for i in range(len(reached(setting)))]
+    names = [phase.name for phase in reached(setting)]
+    order = {name: i for i, name in enumerate(dict.fromkeys(names))}
+    return [known[order[name] % len(known)] for name in names]
 
 
 def rows_at_switches(setting: Setting, time: np.ndarray) -> np.ndarray:
-    """Rows, of times (n,) s, with which phases begin."""
+    """Rows, of times (n,) s, with which phases begin: of two at one time, where the velocity jumps, the later one."""
     starts = np.array([phase.start for phase in reached(setting)])
-    found: np.ndarray = np.flatnonzero(np.isin(time, starts))
+    found: np.ndarray = np.flatnonzero(np.isin(time, starts) & (np.diff(time, append=np.inf) > 0))
     return found
 
 
@@ -60,8 +62,12 @@ def phase_notes(setting: Setting, low: bool) -> list[str]:
     if not setting.phases:
         return []
     known, first = reached(setting), setting.phases[0].start
-    said = []
+    said: list[str] = []
+    told: set[str] = set()
     for phase, (color, _) in zip(known, words_and_colors(setting), strict=True):
+        if phase.name in told:
+            continue
+        told.add(phase.name)
         when = "" if phase is known[0] else f" from {on_day(phase.start - first, setting.duration)}"
         held = f" ({phase.words})" if phase.words else ""
         said.append(f"**{color}** {phase.name}{when}{held}")

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from sailviz.constants import YEAR
+
 DAY = 86400.0
 SHORT = 3 * DAY  # s below which a run is told in hours
+LONG = 100 * YEAR  # and above which in years
 PUSH_UNITS = ((1e-3, "mm/s²"), (1e-6, "µm/s²"), (1e-9, "nm/s²"))
 NAMES, NAME = 40, 6  # letters of all devices' names together, and of each at least, before they are cut
 WIDE = 50.0  # factor between the largest and the median push from which each is told in its own unit
@@ -58,6 +61,8 @@ def amount(value: float, size: float, name: str, most: float) -> str:
 
 def clock(duration: float) -> tuple[float, str]:
     """The unit in which a run counts its time: s, and its word."""
+    if duration > LONG:
+        return YEAR, "Year"
     return (3600.0, "Hour") if duration < SHORT else (DAY, "Day")
 
 
@@ -67,18 +72,18 @@ def moments(time: np.ndarray, epoch: np.datetime64 | None, span: tuple[float, fl
     begin, end = (float(time[0]), float(time[-1])) if span is None else span
     duration = end - begin
     size, word = clock(duration)
-    decimals = 0 if duration / size >= 20 else 1
+    decimals = 1 if duration / size < 20 or word == "Year" else 0
     total = f"{duration / size:.{decimals}f}"
     counted = [f"{word} {(t - begin) / size:.{decimals}f} of {total}" for t in time.tolist()]
     if epoch is None:
         return counted
     stamps = epoch.astype("datetime64[s]") + np.round(time).astype("timedelta64[s]")
-    dates = np.datetime_as_string(stamps, unit="D" if word == "Day" else "m").tolist()
+    dates = np.datetime_as_string(stamps, unit="m" if word == "Hour" else "D").tolist()
     return [f"{date.replace('T', ' ')} · {text}" for date, text in zip(dates, counted, strict=True)]
 
 
 def on_day(seconds: float, duration: float) -> str:
-    """When something happened: "day 427", "hour 5.3"."""
+    """When something happened: "day 427", "hour 5.3", "year 16.2"."""
     size, word = clock(duration)
     value = seconds / size
-    return f"{word.lower()} {value:.0f}" if duration / size >= 20 else f"{word.lower()} {value:.1f}"
+    return f"{word.lower()} {value:.0f}" if duration / size >= 20 and word != "Year" else f"{word.lower()} {value:.1f}"

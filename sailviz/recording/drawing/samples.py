@@ -25,6 +25,7 @@ PLANE_TURNS = 6.0  # revolutions round a planet from which a run shows the plane
 SMOOTH = 72  # points of a trail per revolution
 CLOSE = 1 / 6  # revolutions between drawn rows in a dense window
 LOW, HIGH = 2.0, 5.0  # radii of a planet within which periapsis and apoapsis of a low orbit lie
+STAR = 1e19  # m3/s2, from which a body without a size is a star: a tenth of the Sun's
 STILL = 3e-3  # of the circular speed: a craft that is held in place drifts at less
 
 
@@ -104,8 +105,8 @@ def is_low(first: Run) -> bool:
 
 
 def unit_of(setting: Setting, distance: float) -> tuple[float, str]:
-    """Length 1 of the view, m, and its name: au about the Sun, radii of a body that has a size, else a power of ten."""
-    if setting.body.name == "Sun":
+    """Length 1 of the view, m, and its name: au about a star, radii of a body that has a size, else a power of ten."""
+    if setting.body.name == "Sun" or (setting.body.radius <= 0 and setting.body.mu > STAR):
         return AU, "au"
     if setting.body.radius > 0:
         return setting.body.radius, f"{setting.body.name} radii"

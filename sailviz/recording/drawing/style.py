@@ -83,6 +83,7 @@ TRAIL_PAST = [86, 160, 200]
 TRAIL_FUTURE = [44, 70, 96]
 FENCE_EDGE = {"past": [255, 170, 110], "future": [96, 52, 52], "ring": [205, 110, 74]}
 CRAFT = [255, 255, 255]
+FLYBY = [242, 228, 140]
 SUN_DISC = [255, 238, 190]
 SUN_LINE = [92, 74, 34]
 MIRRORED = [150, 118, 60]
@@ -129,6 +130,7 @@ LANES = {
     "thrust": {"on": ("Thrust on", [190, 160, 255]), "off": ("Coast", REFERENCE)},
     "brake": {"on": ("Brake on", [190, 160, 255]), "off": ("Brake off", REFERENCE)},
     "light": {"on": ("Sunlit", SUN), "off": ("Eclipse", [36, 46, 84])},
+    "filled": {"on": ("Filled in", REFERENCE), "off": ("Given", TRAIL_RECENT)},
     "stowed": {"on": ("Sail stowed", REFERENCE), "off": ("Sail out", FILM_LIT)},
     "force_law_valid": {"on": ("Force law valid", [98, 214, 160]), "off": ("Outside its range", FAULT)},
 }

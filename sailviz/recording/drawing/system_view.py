@@ -31,6 +31,7 @@ from sailviz.recording.drawing.landmarks import (
 from sailviz.recording.drawing.layout import ALL, SO_FAR, TO_COME, Space, Span
 from sailviz.recording.drawing.log import Picture, f4
 from sailviz.recording.drawing.names import MAIN, MAIN_OVER_TABLE, Names
+from sailviz.recording.drawing.passages import log_passages
 from sailviz.recording.drawing.planet import Planet, about_axis
 from sailviz.recording.drawing.samples import orbits
 from sailviz.recording.drawing.shares import log_shares
@@ -77,6 +78,7 @@ def log_system(
     if np.any(turn):
         picture.log_pose("/world/pan", story.index, quaternion=about_axis(turn))
     log_landmarks(picture, story, found, first_eye(camera), names)
+    log_passages(picture, story, first_eye(camera), names)
     if story.setting.ensembles:
         add_ensemble_names(story, names)
     add_push_name(story, size, turned(np.tile(first_eye(camera), (len(turn), 1)), -turn), names)
@@ -128,6 +130,9 @@ def log_backdrop(picture: Picture, story: Story, names: Names) -> None:
             names.add("/world/names/sunlight", "sunlight", style.SUN, SUNLIT_NAME * unit(sun), CRAFT)
     else:
         picture.log_static("/world/center", rr.Points3D([[0, 0, 0]], radii=points(7), colors=[style.SUN]))
+        if story.frame.unit_name == "au":  # a star
+            below = np.array([0.0, 0.0, -2.1 * style.SUN_RADIUS * story.reach])
+            names.add("/world/names/star", body.name, style.SUN, below, SUN)
     if story.frame.sun or body.radius == 0:
         picture.log_mesh("/world/ecliptic", disc(0.06, style.DISC_RADIUS), style.ECLIPTIC, shaded=False)
         picture.log_scale("/world/ecliptic", story.reach)

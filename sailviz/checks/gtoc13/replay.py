@@ -31,7 +31,7 @@ Floats = NDArray[np.float64]
 STAR = "Altaira"
 PHASE_OF = {CONIC: "coast", SAIL: "sail"}
 EVEN, NEAR = 1200, 40  # filled rows over the whole flight; on either side of a perihelion
-STEEPEST = 0.1  # rad about the star between two rows of a sail arc
+STEEPEST = 0.03  # rad about the star between two rows of a sail arc
 MOST_MARKS = 200  # violations that are marked in space
 RING = 361
 
@@ -46,11 +46,11 @@ class _Rows:
         self.parts.append((time, state, normal, filled, kind))
 
 
-def replay(found: Judgement, catalogue: str | Path | None = None) -> Run:
-    """The Run that shows a judged solution. catalogue : as in `judge`, for the planets. RecordingError, in one
-    sentence, for a solution that cannot be drawn."""
+def replay(found: Judgement, catalogue: str | Path | None = None, rows: int = EVEN) -> Run:
+    """The Run that shows a judged solution. catalogue : as in `judge`, for the planets; rows : about so
+    many are filled in on conics. RecordingError, in one sentence, for a solution that cannot be drawn."""
     bodies = {} if catalogue is None else read_catalogue(catalogue)
-    time, state, normal, filled, phases = _flown(found)
+    time, state, normal, filled, phases = _flown(found, rows)
     if len(time) < 2:
         raise RecordingError(f"{found.solution.name} has no rows that follow each other in time: nothing is drawn")
     star = Body(STAR, rules.MU, 0.0)
@@ -88,14 +88,14 @@ def replay(found: Judgement, catalogue: str | Path | None = None) -> Run:
     setting = replace(
         run.setting,
         phases=phases,
-        plots=("score", "distance"),
+        plots=("score", "distance") if found.score > 0 else ("distance",),
         parameters=(("rows", f"{len(found.solution.time):,}"), ("filled in", f"{int(filled.sum()):,}")),
     )
     events = tuple(event for event in run.events if event.name != "velocity jumps")
     return replace(run, setting=setting, bodies=places, events=events)
 
 
-def _flown(found: Judgement) -> tuple[Floats, Floats, Floats, NDArray[np.bool_], tuple[Phase, ...]]:
+def _flown(found: Judgement, even: int) -> tuple[Floats, Floats, Floats, NDArray[np.bool_], tuple[Phase, ...]]:
     """time (n,), state (n, 6), normal (n, 3), filled (n,) of all rows, and the stretches of coast and sail."""
     given, states, rows = found.solution, states_of(found.solution), _Rows()
     both = states.both
@@ -104,7 +104,7 @@ def _flown(found: Judgement) -> tuple[Floats, Floats, Floats, NDArray[np.bool_],
         first, last = arc.first, arc.last
         span = float(states.time[last] - states.time[first])
         if arc.kind == CONIC and span > 0.0:
-            inside = _times_on_conic(found, float(states.time[first]), span, total)
+            inside = _times_on_conic(found, float(states.time[first]), span, even / total)
             place, speed = two_body.advance(
                 np.tile(states.position[first], (len(inside), 1)), np.tile(states.velocity[first], (len(inside), 1)),
                 inside, rules.MU,
@@ -132,10 +132,10 @@ def _inner(count: int) -> NDArray[np.bool_]:
     return found
 
 
-def _times_on_conic(found: Judgement, start: float, span: float, total: float) -> Floats:
+def _times_on_conic(found: Judgement, start: float, span: float, density: float) -> Floats:
     """Times (k,) s after the start of a conic at which rows are filled in: even ones, and close ones where the craft
     passes the star."""
-    times = [np.linspace(0.0, span, max(int(EVEN * span / total), 4) + 1)[1:-1]]
+    times = [np.linspace(0.0, span, max(int(density * span), 4) + 1)[1:-1]]
     for approach in found.approaches[:200]:
         away = np.geomspace(min(3600.0, span / 1e3), span, NEAR)
         passed = approach.time - start
@@ -264,5 +264,5 @@ def _look_for(found: Judgement, planets: Mapping[str, CompetitionBody]) -> list[
     if met:
         small = sum(number > rules.YANDI for number in met)
         big = len([body for body in planets.values() if body.number in met])
-        lines.append(f"bodies that score: **{big}** planets and **{small}** small bodies")
+        lines.append(f"bodies that score: planets **{big}**, small ones **{small}**")
     return lines

@@ -35,6 +35,7 @@ UNKNOWN = 0.25  # revolutions between rows over which light and shadow come and 
 MOST_CHANGES = 40  # of a lane that is still read
 LANE_NAMES = {"thrust": "push", "sunlit": "light"}  # paths stand on the lanes: a word each
 BAND_SHADE = 0.6
+FILLED = "filled"  # rows that were not given: a fact about them, not about the flight
 ON = "on/"  # above the lanes of several devices
 
 
@@ -311,7 +312,7 @@ class Lanes:
     """On and off: only the changes are kept, and written where they can be read."""
 
     def __init__(self, first: Run, frame: Frame, craft: CraftDrawing):
-        self._names = [name for name, values in first.environment.items() if values.dtype == bool]
+        self._names = [name for name, values in first.environment.items() if values.dtype == bool and name != FILLED]
         if craft.pushes:
             self._names.insert(0, "thrust")
         self._devices = {f"{ON}{word(name)}": name for name in first.devices} if len(first.devices) > 1 else {}

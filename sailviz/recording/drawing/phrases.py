@@ -8,7 +8,7 @@ from sailviz.constants import YEAR
 
 DAY = 86400.0
 SHORT = 3 * DAY  # s below which a run is told in hours
-LONG = 100 * YEAR  # and above which in years
+LONG = 25 * YEAR  # and above which in years
 PUSH_UNITS = ((1e-3, "mm/s²"), (1e-6, "µm/s²"), (1e-9, "nm/s²"))
 NAMES, NAME = 40, 6  # letters of all devices' names together, and of each at least, before they are cut
 WIDE = 50.0  # factor between the largest and the median push from which each is told in its own unit

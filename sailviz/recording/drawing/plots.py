@@ -151,7 +151,7 @@ def plots_of(first: Run, frame: Frame, craft: CraftDrawing) -> list[Plot]:
 def open_space_plots(first: Run, frame: Frame, craft: CraftDrawing) -> list[Plot]:
     """Distances, speed and the sail's angles."""
     q, unit = style.QUANTITY, frame.unit
-    from_body = "the Sun" if frame.sun else "the centre"
+    from_body = "the Sun" if frame.sun else first.setting.body.name if frame.unit_name == "au" else "the centre"
     found = [
         Plot(
             "distance",

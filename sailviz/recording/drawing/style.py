@@ -130,7 +130,6 @@ LANES = {
     "thrust": {"on": ("Thrust on", [190, 160, 255]), "off": ("Coast", REFERENCE)},
     "brake": {"on": ("Brake on", [190, 160, 255]), "off": ("Brake off", REFERENCE)},
     "light": {"on": ("Sunlit", SUN), "off": ("Eclipse", [36, 46, 84])},
-    "filled": {"on": ("Filled in", REFERENCE), "off": ("Given", TRAIL_RECENT)},
     "stowed": {"on": ("Sail stowed", REFERENCE), "off": ("Sail out", FILM_LIT)},
     "force_law_valid": {"on": ("Force law valid", [98, 214, 160]), "off": ("Outside its range", FAULT)},
 }

@@ -65,8 +65,24 @@ def on_conic(a, e, inclination, raan, argument, anomaly) -> np.ndarray:
     return radius[..., None] * (np.cos(turn)[..., None] * node + np.sin(turn)[..., None] * ahead)
 
 
+MU_ALTAIRA = 139_348_062_043.343e9  # m3/s2
+MADE_UP = {"PlanetX": (15955016885.357e3, 0.345, 40.0, 341.693, 30.0, 133.427)}  # a m, e, angles in degrees at t = 0
+
+
 def planet_ellipse(name: str, seconds):
-    """a m, e, i, raan, argument, mean anomaly rad at seconds after J2000."""
+    """a m, e, i, raan, argument, mean anomaly rad at seconds after J2000; of a made-up one after t = 0."""
+    if name in MADE_UP:
+        a, e, *angles = MADE_UP[name]
+        i, raan, argument, anomaly = np.radians(angles)
+        turned = np.sqrt(MU_ALTAIRA / a**3) * np.atleast_1d(seconds)
+        return (
+            a + 0 * turned,
+            e + 0 * turned,
+            i + 0 * turned,
+            raan + 0 * turned,
+            argument + 0 * turned,
+            anomaly + turned,
+        )
     start, rate = np.array(PLANETS[name][0]), np.array(PLANETS[name][1])
     a, e, i, longitude, perihelion, node = start[:, None] + rate[:, None] * np.atleast_1d(seconds) / CENTURY
     return a * AU, e, *np.radians([i, node, perihelion - node, longitude - perihelion])
@@ -102,6 +118,9 @@ def sidereal_angle(seconds) -> np.ndarray:
 def path_word(name: str) -> str:
     """A name as part of a path."""
     return "".join(letter if letter.isalnum() else "_" for letter in name.lower())
+
+
+STAR = 1e19  # m3/s2, from which a body without a size is a star
 
 
 class Truth:
@@ -146,7 +165,7 @@ class Truth:
     @cached_property
     def length(self) -> float:
         """m that the system view draws as 1: au, radii of a body, else a power of ten."""
-        if self.body == "Sun":
+        if self.body == "Sun" or (not self.radius and self.mu > STAR):
             return AU
         return self.radius or 10.0 ** np.floor(np.log10(np.linalg.norm(self.position[0])))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -13,7 +14,7 @@ import numpy as np
 import sailviz
 from sailviz.run.from_arrays import trajectory
 
-from .facts import Truth
+from .facts import MADE_UP, Truth
 from .picture import Picture
 
 BESIDE = re.compile("/flight/[^/]+/state")
@@ -383,6 +384,27 @@ def to_the_moon():
     )
 
 
+def competition() -> sailviz.Run:
+    """A flyby of a planet of GTOC13, and a sail after it that breaks a rule: it ends far from where it says."""
+    from sailviz.checks.gtoc13 import judge, sail
+    from sailviz.checks.gtoc13.replay import replay
+
+    text = Path(__file__).parents[2] / "data" / "foreign" / "gtoc13_legal.txt"
+    with tempfile.TemporaryDirectory() as folder:
+        catalogue, solution = Path(folder) / "gtoc13_planets.csv", Path(folder) / "made up.txt"
+        a, e, *angles = MADE_UP["PlanetX"]
+        numbers = ",".join(f"{value:.12g}" for value in (a / 1e3, e, *angles))
+        catalogue.write_text(f"10,PlanetX,3411912.397,12993.800,{numbers},50\n")
+        lines = [line for line in text.read_text().splitlines() if not line.startswith("#")][2:12]
+        row = np.array([float(word) for word in lines[-1].split(",")])
+        normal, span = row[None, 9:], np.array([26 * 365.25 * DAY])
+        end = sail.fly(sail.Steps(1e3 * row[None, 3:9], span, normal, normal, normal)).state[0] / 1e3
+        end[3:] *= 1.02
+        last = np.concatenate([[0, 1, row[2] + span[0]], end, row[9:]])
+        solution.write_text("\n".join([*lines, ", ".join(f"{value:.17g}" for value in last)]))
+        return replay(judge(solution, folder), folder, rows=60)
+
+
 FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "displaced": scene(
         "displaced/circular",
@@ -423,6 +445,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "drag": scene("deorbit/drag-only", propagation__duration_yr=0.3, propagation__output_interval_min=2900),
     "chaos": scene("wind/gpc-spiral", **SMALL),
     "wind": scene("wind/voltage-limits", **SMALL),
+    "competition": competition,
     "held": scene("wind/held-displaced", propagation__outputs=61),
     "light": scene("wind/flickering-sun", **SMALL),
     "round a planet": round_a_planet,

@@ -7,7 +7,7 @@ import re
 import numpy as np
 
 from . import phases
-from .facts import AU, DAY, PLANETS, TILT, planet_place
+from .facts import AU, DAY, MADE_UP, PLANETS, TILT, planet_place
 from .measure import hue, same_place
 from .seen import poses, shown, spots
 from .system import PLANET_HUES
@@ -48,22 +48,20 @@ def mark_name(f, entity, number):
     if text.startswith("start"):
         same_place(dot, f.truth.place[0], f.truth.length)
         return
-    name, word, day = re.fullmatch(r"(.*), (day|hour) ([\d.]+)", text).groups()
+    name, word, day = re.fullmatch(r"(.*), (day|hour|year) ([\d.]+)", text).groups()
     duration = f.truth.time[-1] - f.truth.time[0]
-    when = float(day) * {"day": DAY, "hour": 3600.0}[word]
+    size = {"day": DAY, "hour": 3600.0, "year": 36.525 * DAY}[word]  # the last digit of a year is its tenth
+    when = float(day) * size * (10 if word == "year" else 1)
     known = {event.name: event.time - f.truth.time[0] for event in f.truth.recording.events}
     if name in flown:  # of which this is the beginning
         (event,) = (e for e in f.truth.recording.events if e.name == f"end of {flown[flown.index(name) - 1]}")
         same_place(dot, event.state[:3], f.truth.length)
         known = {name: event.time - f.truth.time[0]}
     if name in known:
-        assert (
-            abs(when - known[name]) <= 0.51 * (DAY if word == "day" else 3600.0)
-            or abs(when - duration) < 0.03 * duration
-        )
+        assert abs(when - known[name]) <= 0.51 * size or abs(when - duration) < 0.03 * duration
         return
     assert name == "end" or name.startswith("reaches ")
-    assert abs(when - duration) <= 0.51 * (DAY if word == "day" else 3600.0)
+    assert abs(when - duration) <= 0.51 * size
     if name.startswith("reaches the orbit of "):
         reached(f, name.removeprefix("reaches the orbit of "))
     elif name.startswith("reaches "):
@@ -77,6 +75,37 @@ def reached(f, name):
     values = PLANETS[name][0]
     assert abs(a / AU - values[0]) < 0.03 * values[0]
     assert min(abs(e - values[1]), e) < 0.03
+
+
+def passages(f, entity, word):
+    """Dots where events are that begin with a word."""
+    places = f.picture.place(entity, "Points3D:positions", 0)
+    events = passed(f, word)
+    assert len(places) == len(events) > 0
+    same_place(places, np.array([event.state[:3] for event in events]), f.truth.length)
+    assert hue(f.picture.color(entity, "Points3D:colors")[0]) == {"violation": "red", "flyby of ": "yellow"}[word]
+
+
+def passage_name(f, entity, number, word):
+    """Above its dot, the event in its own words."""
+    (text,) = f.picture.fixed(entity, "Points3D:labels")
+    event = passed(f, word)[int(number)]
+    assert text == event.name.removeprefix("flyby of ")
+    place, dot = shown(f, entity)[0][1], event.state[:3] / f.truth.length
+    same_place(place[:2], dot[:2], size=1 + np.abs(dot).max())
+    assert 0 < place[2] - dot[2] < 0.4 * f.truth.reach
+
+
+def passed(f, word):
+    return [event for event in f.truth.recording.events if event.name.startswith(word)]
+
+
+def star_name(f, entity):
+    """The star's own name, below it."""
+    for _, (x, y, z) in shown(f, entity):
+        assert (x, y) == (0, 0)
+        assert -0.2 * f.truth.reach < z < 0
+    assert f.picture.fixed(entity, "Points3D:labels") == [f.truth.body]
 
 
 def ring_name(f, entity, name):
@@ -106,6 +135,9 @@ def planet_body(f, entity, name):
         moon_body(f, drawn, name)
         return
     assert hue(f.picture.color(entity, "Points3D:colors")[0]) == PLANET_HUES[name]
+    if name in MADE_UP:
+        same_place(drawn, planet_place(name, f.truth.time), f.truth.length)
+        return
     if f.truth.seconds is not None:
         same_place(drawn, planet_place(name, f.truth.seconds), f.truth.length)
         return

@@ -70,9 +70,9 @@ def date(f, row, day, minute):
     assert minute is None or str(stamp)[11:16] == minute
 
 
-@part(r"(Day|Hour) ([\d.]+) of ([\d.]+)")
+@part(r"(Day|Hour|Year) ([\d.]+) of ([\d.]+)")
 def count(f, row, word, now, total):
-    size = {"Day": DAY, "Hour": 3600.0}[word]
+    size = {"Day": DAY, "Hour": 3600.0, "Year": 365.25 * DAY}[word]
     told(now, (f.truth.time[row] - f.truth.time[0]) / size)
     told(total, (f.truth.time[-1] - f.truth.time[0]) / size)
 
@@ -82,8 +82,9 @@ def phase(f, row, name):
     assert name == phases.names(f)[phases.of_rows(f)[row]]
 
 
-@part(r"([\d.]+) au from the Sun")
-def distance(f, row, value):
+@part(r"([\d.]+) au from (the Sun|Altaira)")
+def distance(f, row, value, star):
+    assert star.endswith(f.truth.body)
     told(value, np.linalg.norm(f.truth.position[row]) / AU)
 
 

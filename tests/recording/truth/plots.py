@@ -307,8 +307,8 @@ def log(f, entity):
     assert len(lines) == 1 + len(events)
     for step, line, event in zip(steps[1:], lines[1:], events, strict=True):
         assert step == np.searchsorted(f.truth.time, event.time) == event.step
-        word, value, small, name = re.fullmatch(r"(?:(day|hour) (\S+)|(\S+) s): (.*)", line).groups()
-        seconds = float(value) * {"day": DAY, "hour": 3600.0}[word] if word else float(small)
+        word, value, small, name = re.fullmatch(r"(?:(day|hour|year) (\S+)|(\S+) s): (.*)", line).groups()
+        seconds = float(value) * {"day": DAY, "hour": 3600.0, "year": 365.25 * DAY}[word] if word else float(small)
         assert abs(seconds - event.time) <= 6e-4 * event.time
         assert name == event.name
         before, after = f.truth.position[max(step - 1, 0)], f.truth.position[step]
@@ -323,8 +323,8 @@ def of_it(f, lines):
     table = f.truth.recording.get(path, {"time_s": [], "name": []})
     assert len(lines) == len(table["time_s"])
     for line, time, name in zip(lines, table["time_s"], table["name"], strict=True):
-        word, value, small, told = re.fullmatch(r"(?:(day|hour) (\S+)|(\S+) s): (.*)", line).groups()
-        seconds = float(value) * {"day": DAY, "hour": 3600.0}[word] if word else float(small)
+        word, value, small, told = re.fullmatch(r"(?:(day|hour|year) (\S+)|(\S+) s): (.*)", line).groups()
+        seconds = float(value) * {"day": DAY, "hour": 3600.0, "year": 365.25 * DAY}[word] if word else float(small)
         assert abs(seconds - (time + f.truth.clock[0] - f.truth.time[0])) <= 6e-4 * abs(seconds)
         assert told == name
 

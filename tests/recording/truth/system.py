@@ -19,6 +19,7 @@ PLANET_HUES = {
     "Mars": "orange",
     "Jupiter": "orange",
     "Saturn": "yellow",
+    "PlanetX": "grey",
 }
 
 

@@ -109,7 +109,8 @@ def _loosened(part: Any) -> Any:
     made = {
         "anyOf" if key == "oneOf" else key: _loosened(value)
         for key, value in part.items()
-        if key not in ("required", "default", "discriminator", "minItems") and not (key == "allOf" and "type" in part)
+        if key not in ("required", "default", "discriminator", "minItems", "if", "then")
+        and not (key == "oneOf" and "type" in part)  # which of its spellings a quantity must have
     }
     items = part.get("items")
     if isinstance(items, dict) and ("$ref" in items or "oneOf" in items):
@@ -177,6 +178,7 @@ def _spell_out(schema: dict[str, Any]) -> None:
     """Puts a key for each of its units in the place of every quantity."""
     properties = schema.get("properties", {})
     required = schema.get("required", [])
+    groups = []
     for name in list(properties):
         dimension = _dimension_of(properties[name])
         if not dimension:
@@ -199,4 +201,14 @@ def _spell_out(schema: dict[str, Any]) -> None:
             keys = [*keys, name]
         if name in required:
             required.remove(name)
-            schema.setdefault("allOf", []).append({"oneOf": [{"required": [key]} for key in keys]})
+            groups.append(keys)
+    if groups:
+        schema |= _one_of_each(groups)
+
+
+def _one_of_each(groups: list[list[str]]) -> dict[str, Any]:
+    """That exactly one key of every group is there; without allOf, since Taplo completes no keys of a table that has
+    one."""
+    first, *others = groups
+    one = {"oneOf": [{"required": [key]} for key in first]}
+    return one | {"if": True, "then": _one_of_each(others)} if others else one

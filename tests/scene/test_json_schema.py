@@ -51,3 +51,19 @@ def test_schema_knows_every_unit_of_every_quantity():
     properties = schema()["$defs"]["Propagation"]["properties"]
     assert {f"duration_{unit}" for unit in UNITS["time"]} <= set(properties)
     assert "duration" not in properties
+
+
+def test_every_quantity_that_is_required_is_asked_for_beside_the_others():
+    window = {"start_d": 1, "end_d": 2, "output_interval_h": 1}
+    asked = with_parts(propagation={"duration_d": 10, "dense": [window]})
+    assert VALIDATOR.is_valid(asked)
+    for key in window:
+        short = [{name: value for name, value in window.items() if name != key}]
+        assert not VALIDATOR.is_valid(with_parts(propagation={"duration_d": 10, "dense": short}))
+        assert not VALIDATOR.is_valid(
+            with_parts(propagation={"duration_d": 10, "dense": [window | {key[:-1] + "s": 1}]})
+        )
+
+
+def test_no_table_of_the_schema_hides_its_keys_from_taplo():
+    assert [name for name, table in schema()["$defs"].items() if "allOf" in table or "allOf" in schema()] == []

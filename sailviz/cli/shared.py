@@ -59,12 +59,15 @@ def values_of(settings: Iterable[str]) -> dict[str, Any]:
 
 
 def say_if_compiling(quiet: bool) -> None:
-    """Tell a person why the first run takes so long."""
-    from sailviz.compiled import is_compiled
-    from sailviz.propagate import collocation, dop853, gauss_jackson
+    """Tell a person why the first run, or the first that needs other machine code, takes so long."""
+    from sailviz.compiled import when_long
 
-    if not quiet and not any(is_compiled(each.advance_compiled) for each in (collocation, dop853, gauss_jackson)):
-        click.echo("Compiling the propagator for this machine: once, about 20 s.", err=True)
+    if not quiet:
+        when_long(_say_compiling)
+
+
+def _say_compiling() -> None:
+    click.echo("Compiling for this machine: once, up to half a minute.", err=True)
 
 
 @contextmanager

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from sailviz.compiled.entries import entry as entry
     from sailviz.compiled.layouts import STATE as STATE
     from sailviz.compiled.layouts import layout as layout
+    from sailviz.compiled.waiting import when_long as when_long
 
 _HOMES = {
     "OPTIONS": "decorators",
@@ -52,5 +53,6 @@ _HOMES = {
     "entry": "entries",
     "STATE": "layouts",
     "layout": "layouts",
+    "when_long": "waiting",
 }
 __getattr__, __dir__, __all__ = lazily(__name__, _HOMES)

@@ -7,10 +7,11 @@ from contextlib import contextmanager
 from typing import Any
 
 import numba
-from numba.core import registry, sigutils
+from numba.core import registry, sigutils, types
 from numba.core.ccallback import CFunc
-from numba.core.codegen import JITCodeLibrary
+from numba.core.codegen import CPUCodeLibrary, JITCodeLibrary
 from numba.core.compiler_lock import global_compiler_lock
+from numba.core.types.functions import BaseFunction
 
 from sailviz.compiled.decorators import BARE, OPTIONS, WITHIN, stamp
 from sailviz.compiled.machine_code import MachineCode
@@ -18,14 +19,15 @@ from sailviz.compiled.machine_code import MachineCode
 KNOWN_WITHOUT_NUMBA = ("numba_nextafter",)  # of numba's own functions: see machine_code
 
 
-def compile_native(function: Callable[..., Any], signature: Any) -> MachineCode | None:
+def compile_native(function: Callable[..., Any], signature: Any, merged: str = "") -> MachineCode | None:
     """Machine code of a function in numba's own convention, int status(*result, **error, arguments ...). None where it
     would call functions of numba's, such as those that count references.
 
-    function : compiled without reference counting. signature : of numba, or how numba writes it.
+    function : compiled without reference counting. signature : of numba, or how numba writes it. merged : name of one
+    that it alone calls, which is optimised as part of it only.
     """
     njit: Any = numba.njit
-    with global_compiler_lock, _object_only():
+    with global_compiler_lock, _object_only(), _remembered_types(), _optimised_once(merged):
         dispatcher = njit(signature, **BARE, **WITHIN)(function)
         (result,) = dispatcher.overloads.values()
         library = result.library
@@ -53,20 +55,63 @@ def compile_by_numba(function: Callable[..., Any], signature: Any) -> tuple[int,
 
 
 @contextmanager
+def _replaced(owner: type, name: str, other: Callable[..., Any]) -> Iterator[None]:
+    """Let a class have another method for a while."""
+    inherited, own = name not in owner.__dict__, getattr(owner, name)
+    setattr(owner, name, other)
+    try:
+        yield
+    finally:
+        if inherited:
+            delattr(owner, name)
+        else:
+            setattr(owner, name, own)
+
+
+@contextmanager
 def _object_only() -> Iterator[None]:
     """Let numba neither make machine code of each function that is called, all of which are merged into the one that is
     wanted, nor ways into them for Python: a quarter of the time."""
-    library_class: Any = JITCodeLibrary
-    whole = library_class._finalize_final_module
-    context = registry.cpu_target.target_context
 
     def merged(library: Any) -> None:
         library._finalized = True
 
-    library_class._finalize_final_module = merged
-    context.get_executable = lambda library, description, environment: [].append  # something that can be kept
-    try:
+    def none(context: Any, library: Any, description: Any, environment: Any) -> Callable[[Any], None]:
+        return [].append  # something that can be kept
+
+    context: type = type(registry.cpu_target.target_context)
+    with (
+        _replaced(JITCodeLibrary, "_finalize_final_module", merged),
+        _replaced(context, "get_executable", none),
+    ):
         yield
-    finally:
-        library_class._finalize_final_module = whole
-        del context.get_executable
+
+
+@contextmanager
+def _optimised_once(name: str) -> Iterator[None]:
+    """Leave the function of this name to the optimiser of the one that calls it: a tenth of the time."""
+    optimise: Callable[[Any], None] = CPUCodeLibrary._optimize_final_module
+
+    def others(library: Any) -> None:
+        if library.name != name:
+            optimise(library)
+
+    with _replaced(CPUCodeLibrary, "_optimize_final_module", others):
+        yield
+
+
+@contextmanager
+def _remembered_types() -> Iterator[None]:
+    """Let numba find once what an operator or a function of its own makes of arguments of given types, where it would
+    try all that it knows at every place in the code: a sixth of the time."""
+    known: dict[Any, tuple[Any, Any]] = {}
+    find: Callable[..., Any] = BaseFunction.get_call_type
+
+    def remembered(function: Any, context: Any, arguments: tuple[types.Type, ...], named: dict[str, types.Type]) -> Any:
+        at = id(function), arguments, tuple(sorted(named.items()))
+        if at not in known:
+            known[at] = find(function, context, arguments, named), function  # kept, lest its id become another's
+        return known[at][0]
+
+    with _replaced(BaseFunction, "get_call_type", remembered):
+        yield

@@ -15,6 +15,7 @@ import numpy as np
 from sailviz.compiled import machine_code
 from sailviz.compiled.decorators import OPTIONS, called
 from sailviz.compiled.machine_code import CannotLoadError, MachineCode
+from sailviz.compiled.waiting import compiling
 
 _PLACE = ctypes.c_void_p
 _STATUS = ctypes.CFUNCTYPE(ctypes.c_int, _PLACE, _PLACE, _PLACE)  # where the result goes, where an error, the arguments
@@ -90,7 +91,7 @@ class Entry:
                 return MISFIT
             return kernel(*arguments(place))
 
-        return compile_native(unpacked, "int64(int64)")
+        return compile_native(unpacked, "int64(int64)", self.py_func.__qualname__)
 
     @cached_property
     def native(self) -> Callable[[int, int, int], int] | None:
@@ -184,7 +185,8 @@ def c_function(function: Callable[..., None], declared: Callable[[], Any]) -> tu
         return address, function
     from sailviz.compiled.compiling import compile_by_numba
 
-    return compile_by_numba(function, declared())
+    with compiling():
+        return compile_by_numba(function, declared())
 
 
 def _without_numba(function: Callable[..., None], signature: Any) -> MachineCode | None:
@@ -204,7 +206,8 @@ def _address(function: Callable[..., Any], make: Callable[[], MachineCode | None
         found = machine_code.kept(function)
         if found is not None:
             return machine_code.load(found)
-        made = make()
+        with compiling():
+            made = make()
         if made is None:
             return None
         address = machine_code.load(made)

@@ -9,8 +9,10 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
+from multiprocessing.synchronize import Semaphore
 from typing import Any
 
+from sailviz.compiled import waiting
 from sailviz.sweeps.store import SweepError
 from sailviz.words import nearest
 
@@ -35,14 +37,26 @@ class SerialExecutor(Executor):
 def processes(workers: int | None = None) -> ProcessPoolExecutor:
     """Processes that start afresh on every system, so that no thread or lock of this one is copied, and that end with
     it, however it ends."""
+    context = multiprocessing.get_context("spawn")
     return ProcessPoolExecutor(
-        workers or os.cpu_count() or 1, mp_context=multiprocessing.get_context("spawn"), initializer=_begin_worker
+        workers or os.cpu_count() or 1,
+        mp_context=context,
+        initializer=_begin_worker,
+        initargs=(waiting.listener(), context.Semaphore(1)),
     )
 
 
-def _begin_worker() -> None:
+def _begin_worker(tell: Callable[[], None] | None, turn: Semaphore) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides
     threading.Thread(target=_end_with_parent, daemon=True).start()
+    if tell is not None:
+        waiting.when_long(lambda: _tell_once(tell, turn))
+
+
+def _tell_once(tell: Callable[[], None], turn: Semaphore) -> None:
+    """All workers compile the same at the same time: the first one to say so speaks for them."""
+    if turn.acquire(block=False):
+        tell()
 
 
 def _end_with_parent() -> None:
@@ -106,6 +120,9 @@ def _dask(address: str, workers: int | None) -> Iterator[Any]:
         LocalCluster(n_workers=count, threads_per_worker=1, dashboard_address=None) as cluster,
         Client(cluster) as client,
     ):
+        if (tell := waiting.listener()) is not None:
+            first, *_ = client.scheduler_info()["workers"]
+            client.run(waiting.when_long, tell, workers=[first])  # one speaks for all
         yield client
 
 

@@ -70,7 +70,8 @@ def schema_of(model: type[BaseModel], what: str) -> dict[str, Any]:
         for key, value in part.get("properties", {}).items():
             value["title"] = key.replace("_", " ")
             if said := description_of(models[name], key):
-                value["description"] = said
+                word = f'"{value["const"]}": ' if "const" in value else ""  # editors show those of all kinds together
+                value["description"] = word + said
         _spell_out(part)
     head = {"$schema": DIALECT, "$id": f"urn:sailviz:{__version__}:{what}", "title": f"sailviz {what} file"}
     without_null: dict[str, Any] = _without_null({key: value for key, value in made.items() if key != "title"})

@@ -29,7 +29,7 @@ PACKAGE = Path(sailviz.__file__).parent
 
 
 def place(model, key):
-    """Where the sentence of a key belongs."""
+    """File, table and key of a sentence."""
     owner = next(one for one in model.__mro__ if key in inspect.get_annotations(one))
     return f"{owner.__module__.replace('.', '/')}.toml [{owner.__name__}] {key}"
 
@@ -87,6 +87,11 @@ def test_a_quantity_says_its_unit_in_every_spelling():
     assert properties["inclination_deg"]["description"].endswith(" In degrees.")
     plain = {"m", "km", "mm", "s", "kg", "g", "V", "kV", "A", "mA", "Pa", "nPa", "W", "mW", "kW", "N", "mN", ""}
     assert {unit for units in UNITS.values() for unit in units} <= plain | set(IN_WORDS)
+
+
+def test_each_kind_says_its_word_since_editors_show_all_kinds_together():
+    kind = scene_schema()["$defs"]["CircularStart"]["properties"]["kind"]
+    assert kind["description"] == '"circular": Start on a circular Keplerian orbit.'
 
 
 def test_bounds_and_defaults_are_in_the_unit_of_the_key():

@@ -67,3 +67,16 @@ def test_every_quantity_that_is_required_is_asked_for_beside_the_others():
 
 def test_no_table_of_the_schema_hides_its_keys_from_taplo():
     assert [name for name, table in schema()["$defs"].items() if "allOf" in table or "allOf" in schema()] == []
+
+
+def test_a_quantity_with_words_takes_each_of_them_without_a_unit_and_numbers_with_one():
+    wind = {"kind": "gamma", "shape": 3, "scale_nPa": 0.7, "seed": 1}
+    for more, good in (
+        ({"reference": "mean"}, True),
+        ({"reference": "unbiased"}, True),
+        ({"reference_nPa": 2}, True),
+        ({"reference": 2}, False),
+        ({"reference_nPa": "mean"}, False),
+        ({"reference": "middle"}, False),
+    ):
+        assert VALIDATOR.is_valid(with_parts(environment={"solar_wind": wind | more})) == good, more

@@ -216,6 +216,8 @@ class Block:
             return error(self.motions[asked.item.closed_form], self.start, run)
         if asked.quantity.stem == "longitude":
             return self.longitude(run) / asked.quantity.factor
+        if asked.item.device is not None:
+            run = replace(run, thrust=run.devices[asked.item.device])
         return asked.quantity.of(run)
 
     def longitude(self, run: Run) -> np.ndarray:
@@ -274,6 +276,8 @@ def _name(item: Expectation) -> str:
     """What is expected, in words."""
     if item.closed_form is not None:
         return f"error against {item.closed_form}"
+    if item.device is not None:
+        return f"{item.quantity} of {item.device}"
     return item.quantity if item.ensemble is None else f"{item.quantity}, {item.statistic} of {item.ensemble}"
 
 
@@ -295,6 +299,7 @@ def _row_at(run: Run, event: Event) -> Run:
         mass=event.state[6:7],
         attitude=attitude,
         thrust=thrust,
+        devices={name: row(device) for name, device in run.devices.items()},
         elements=elements(position, velocity, run.setting.body.mu),
         environment={name: values[nearest] for name, values in run.environment.items()},
         bodies={},

@@ -48,6 +48,7 @@ UNSAID = {  # by table, keys without which scenes were complete before they were
     "light": ("kind", "distance", "longitude", "obliquity", "period", "direction", "mu", "radius"),
     "environment": ("gravity_of", "shadow_of", "magnetosphere", "space_weather"),
     "device": ("edge_area", "name", "steering"),
+    "expect": ("device",),
     "steering": ("in_shadow", "minimum_perigee", "margin"),
 }
 
@@ -135,9 +136,10 @@ class Scene(Section):
         not said: what scenes were before they could be said, they still are."""
         values = self.model_dump(mode="json")
         beside = [device.model_dump(mode="json") for device in self._beside]
-        tables = [("", values), *((name, values[name] or {}) for name in UNSAID if name)]
+        tables = [("", values), *((name, values[name] or {}) for name in UNSAID if name and name != "expect")]
         tables += [("device", device) for device in beside]
         tables += [("steering", device["steering"] or {}) for device in beside]
+        tables += [("expect", expected) for expected in values["expect"]]
         for name, table in tables:
             for key in UNSAID[name]:
                 if table.get(key, "") is None:

@@ -102,6 +102,7 @@ def spellings() -> dict[str, Quantity]:
     }
 
 
+OF_EACH_DEVICE = ("thrust_acceleration",)  # what can be asked of one device in a list of them
 PLACES = {"radius": 0, "longitude": 1, "radial_speed": 3, "transverse_speed": 4}  # of a planar flight's states
 MEANS = {"thrust_factor": "mean_factor", "thrust_voltage": "mean_voltage", "saturated": "mean_saturated"}
 

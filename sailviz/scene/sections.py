@@ -153,11 +153,12 @@ STATISTICS_OF_ROWS: tuple[str, ...] = get_args(OfRows)
 
 
 class Expectation(Section):
-    """A quantity that the run must reach: value and tolerance in the quantity's own unit. ensemble : of its flights
-    instead, a statistic of their ends: the mean, the mean miss of the nominal flight's end, or the standard
-    deviation."""
+    """A quantity that the run must reach: value and tolerance in the quantity's own unit. device : of a list, whose
+    share of the thrust it is. ensemble : of its flights instead, a statistic of their ends: the mean, the mean miss of
+    the nominal flight's end, or the standard deviation."""
 
     quantity: str
+    device: str | None = None
     ensemble: str | None = None
     statistic: Literal["mean", "miss", "deviation"] | None = None
     closed_form: Literal["kepler", "reduced-kepler", "displaced-orbit", "logarithmic-spiral"] | None = None

@@ -148,6 +148,7 @@ def expectation(item: dict[str, Any]) -> str:
     at = item.get("at") or f"t = {duration(item.get('at_time') or 0.0)}"
     within = f"{item['within_percent']:g} %" if item.get("within_percent") else f"{item.get('within') or 0:g}"
     of = f", {item['statistic']} of {item['ensemble']}," if item.get("ensemble") else ""
+    of = f" of {item['device']}" if item.get("device") else of
     return f"{item['quantity']}{of} at {at}: {item['value']:.10g} within {within}"
 
 

@@ -14,7 +14,7 @@ from sailviz.scene.conflicts.ensembles import placed_ensembles
 from sailviz.scene.conflicts.records import device_of, ionosphere_of
 from sailviz.scene.device import NoDevice
 from sailviz.scene.phases import end_of
-from sailviz.scene.quantities import MEANS, PLACES, spellings
+from sailviz.scene.quantities import MEANS, OF_EACH_DEVICE, PLACES, spellings
 from sailviz.scene.sections import STATISTICS_OF_ROWS
 from sailviz.scene.sky import has_sky, kernel_bodies, light_away, shades
 from sailviz.words import nearest, shown
@@ -134,6 +134,24 @@ def expected_of_ensembles(scene: Scene) -> Faults:
         if stem not in PLACES and (stem not in MEANS or expected.statistic != "mean"):
             words = f"of an ensemble are known: {', '.join(PLACES)}; and the mean of {', '.join(MEANS)}"
             found.append((f"expect[{i}].quantity", words))
+    return found
+
+
+def expected_of_devices(scene: Scene) -> Faults:
+    """Shares of the thrust are those of a device in a list that is there."""
+    found: Faults = []
+    known = [str(device.name) for device in scene.devices] if scene.place is not None else []
+    for i, expected in enumerate(scene.expect):
+        if expected.device is None:
+            continue
+        where = f"expect[{i}].device"
+        if not known:
+            found.append((where, "names one of a list of devices: this scene has one device and no [[device]]"))
+        elif expected.device not in known:
+            found.append((where, f"no such device {shown(expected.device)}. {nearest(expected.device, known)}"))
+        stem = spellings()[expected.quantity].stem
+        if stem not in OF_EACH_DEVICE or expected.ensemble is not None:
+            found.append((f"expect[{i}].quantity", f"of one device is known: {', '.join(OF_EACH_DEVICE)}"))
     return found
 
 

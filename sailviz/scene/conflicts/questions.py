@@ -27,6 +27,7 @@ QUESTIONS = (
     approximations,
     ensembles,
     moments.expected_of_ensembles,
+    moments.expected_of_devices,
     craft.surface_of_the_body,
     departures.outside_the_body,
     departures.frame_of_steering,

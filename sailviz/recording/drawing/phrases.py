@@ -24,9 +24,11 @@ def digits(most: float) -> int:
     return 2 if most < 9.995 else 1 if most < 99.95 else 0
 
 
-def push_words(push: np.ndarray, word: str = "push") -> list[str]:
-    """What acts in each row (n,), m/s2: "push 0.40 mm/s²", "no push"."""
-    most, typical = float(push.max()), float(np.median(push))
+def push_words(push: np.ndarray, word: str = "push", beside: np.ndarray | None = None) -> list[str]:
+    """What acts in each row (n,), m/s2: "push 0.40 mm/s²", "no push". beside : (n,) a push in whose unit and decimals
+    it is told."""
+    whole = push if beside is None else beside
+    most, typical = float(whole.max()), float(np.median(whole))
     own = typical > 0 and most > WIDE * typical
 
     def words(a: float) -> str:

@@ -98,7 +98,7 @@ def log_close_shares(picture: Picture, story: Story, names: Names, whole: np.nda
             log_share(picture, story, f"/sail/shares/{word(name)}", arrow, colors[name], "close share")
             there = np.any(arrow, axis=1, keepdims=True)
             place = np.where(there, BEYOND * arrow, np.nan)
-            texts = push_words(run.devices[name].magnitude, name)
+            texts = push_words(run.devices[name].magnitude, name, story.push)
             names.add(f"/sail/shares/{word(name)}/name", texts, colors[name], place, RANK)
 
 

@@ -87,9 +87,17 @@ def reference_flight(scene, state, times):
     return {t: (r[t], (r[t + step] - r[t - step]) / (2 * step) if t else begin) for t in times}
 
 
+def devices_beside(scene):
+    """(t, r, v, mass) -> acceleration, mass rate of each device beside the first one."""
+    steady = scene.environment.solar_wind.kind == "steady" and scene.environment.irradiance.kind == "steady"
+    if scene.beside and (not steady or any(one.active is not None for one in scene.devices)):
+        raise NotImplementedError("times of thrust of several devices")
+    return [device(scene.alone(one)) for one in scene.beside]
+
+
 def right_hand_side(scene, acceleration, factor, latest):
     mu, around = body(scene)[0], scene.environment
-    drag = air_drag(scene)
+    drag, others = air_drag(scene), devices_beside(scene)
     smooth = smoothed(scene) if getattr(scene.steering, "kind", "") == "smoothed-transfer" else None
 
     def rhs(t, y):
@@ -112,6 +120,9 @@ def right_hand_side(scene, acceleration, factor, latest):
             share *= soft_edges(scene, min(t, latest), r, v)
             push, rate = acceleration(min(t, latest), r, v, mass)
             a, rate = a + share * push, share * rate
+        for other in others:
+            push, flow = other(min(t, latest), r, v, mass)
+            a, rate = a + push, rate + flow
         return np.concatenate([v, a, [rate]])
 
     return rhs

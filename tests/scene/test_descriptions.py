@@ -10,6 +10,7 @@ import subprocess
 import sys
 from collections import Counter
 from pathlib import Path
+from typing import Literal, get_args, get_origin
 
 import pytest
 
@@ -79,6 +80,27 @@ def test_a_sentence_is_one_plain_line_that_names_no_unit_of_its_key():
             dimension, _ = dimension_and_models(info.annotation, info.metadata)
             if dimension:  # the schema adds it for every spelling
                 assert not re.search(r"\b[Ii]n (metres|seconds|degrees|radians|kilometres|days)\b", said), said
+
+
+def test_the_words_and_defaults_that_a_sentence_names_are_those_of_the_checker():
+    for model in MODELS:
+        for key, info in model.model_fields.items():
+            said, allowed = description_of(model, key), words_allowed(info.annotation)
+            beside = re.findall(r'(\w+) = "([^"]+)"', said)
+            for other, word in beside:
+                found = next((one.model_fields[other] for one in (model, Scene) if other in one.model_fields), None)
+                assert found is None or word in words_allowed(found.annotation) or not words_allowed(found.annotation)
+            for word, rest in re.findall(r'"([^"]+)"((?: \([^)]*\))?)', re.sub(r'\w+ = "[^"]+"', "", said)):
+                assert not allowed or word in allowed, f"{place(model, key)}: {word}"
+                if rest.startswith(" (the default") and info.default is not None:
+                    assert info.default == word, place(model, key)
+
+
+def words_allowed(annotation):
+    """What a field may be in words."""
+    if get_origin(annotation) is Literal:
+        return set(get_args(annotation))
+    return set().union(*(words_allowed(part) for part in get_args(annotation))) if get_args(annotation) else set()
 
 
 def test_a_quantity_says_its_unit_in_every_spelling():

@@ -34,8 +34,9 @@ def test_json_schema_accepts_shipped_scenes_and_rejects_a_misspelt_key(name):
     assert [error.message for error in VALIDATOR.iter_errors(good)] == []
     for where in ("start", "device", "propagation"):
         bad = copy.deepcopy(good)
-        key = next(key for key in bad[where] if key != "kind")
-        bad[where][key + "x"] = bad[where].pop(key)
+        table = bad[where][0] if isinstance(bad[where], list) else bad[where]
+        key = next(key for key in table if key != "kind")
+        table[key + "x"] = table.pop(key)
         assert not VALIDATOR.is_valid(bad)
 
 

@@ -24,7 +24,7 @@ from sailviz.run import gaps as spans
 from sailviz.run.oem import ECLIPTIC, EQUATOR, SAME_PLACE, Ephemeris
 from sailviz.run.oem_writer import plain, write_oem
 from sailviz.sky.bodies import BODIES
-from sailviz.sky.places import tdb_ahead
+from sailviz.sky.places import Sky, tdb_ahead
 from sailviz.version import __version__
 
 ORBIT_FILES = ("oem", "spk")
@@ -80,7 +80,7 @@ def _turned(data: Evidence, epoch: np.datetime64, state: Table, frame: str) -> t
         raise RecordingError(f"a run round {_article(body)} is written in {' or '.join(TURNED)}, not in {frame}")
     if TURNED[frame] == own:
         return position, velocity, AS_IT_IS if frame == ECLIPTIC else HOW[own]
-    centuries = frames.centuries_since_j2000(epoch)
+    centuries = Sky(epoch).centuries
     turn = frames.icrf_to(own, centuries) @ frames.icrf_to(TURNED[frame], centuries).T  # from the frame wanted to it
     return position @ turn, velocity @ turn, HOW[own].split(";")[0] if frame == ECLIPTIC else HOW[own]
 

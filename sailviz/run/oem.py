@@ -16,6 +16,7 @@ from sailviz import frames
 from sailviz.calendar import DateError, tai
 from sailviz.errors import RecordingError
 from sailviz.run import dates
+from sailviz.sky.places import Sky
 
 ECLIPTIC = "ECLIPJ2000"
 EQUATOR = "EME2000"
@@ -88,7 +89,7 @@ class Ephemeris:
         if self.frame not in NEARLY_INERTIAL:
             known = ", ".join(("J2000", *NEARLY_INERTIAL, *NEARLY_OF_DATE))
             raise RecordingError(f"the frame {self.frame} cannot be turned here; known round the Earth: {known}")
-        return self._turned(frames.precession(frames.centuries_since_j2000(self.utc)), OF_DATE)
+        return self._turned(frames.precession(Sky(self.utc).centuries), OF_DATE)
 
     def _turned(self, matrix: np.ndarray, frame: str) -> Ephemeris:
         return replace(self, frame=frame, position=self.position @ matrix.T, velocity=self.velocity @ matrix.T)

@@ -32,6 +32,7 @@ COMMANDS = {  # name, which is also that of the module -> function there
     "report": "report",
     "run": "run",
     "schema": "schema",
+    "shape": "shape",
     "show": "show",
     "sweep": "sweep",
     "transfer": "transfer",

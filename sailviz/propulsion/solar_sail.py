@@ -100,6 +100,21 @@ FILMS = {
 }
 
 
+# table 3.1: cr, cs, Bf, Bb, ef, eb of the front
+OPTICS = {
+    "ideal": (1.0, 1.0, 2 / 3, 2 / 3, 0.0, 0.0),
+    "jpl-1978": (0.88, 0.94, 0.79, 0.55, 0.05, 0.55),
+    "jpl-2015": (0.91, 0.94, 0.79, 0.67, 0.025, 0.27),
+}
+
+
+def black_back(optics: tuple[float, float, float, float, float, float]) -> Film:
+    """The back of a film, given the optics of its front, where it mirrors nothing, cr = 0: (3.18)-(3.20) with the roles
+    of front and back swapped. Of the backs of the named films table 3.1 says no more than eb and Bb."""
+    _, _, Bf, Bb, ef, eb = optics
+    return Film.from_optics(0.0, 0.0, Bb, Bf, eb, ef)
+
+
 def film(name: str) -> Film:
     """A film by name: "ideal", "eta-perfect", "jpl-1978" or "jpl-2015". KeyError for another name."""
     return FILMS[name]

@@ -20,18 +20,13 @@ from sailviz.shapes.facets import Coefficients, Shape, Surface, subdivided
 from sailviz.shapes.file_checks import ShapeError
 from sailviz.shapes.light_force import pressure, tensors
 from sailviz.shapes.light_table import LightTable
-from sailviz.shapes.own_files import FORMATS, read_parts, shape_of
+from sailviz.shapes.own_files import read_parts, shape_of
 
 PITCHES = (0, 35)  # deg, of the report
 DRAWN = tuple(range(0, 90, 5))  # deg, of the recording
 LOOKS = 400  # random directions in which the table is tried
 FINE = 7e-4  # share of the films' area that a facet of a file may have where it may be shaded
 CLOSE = 60.0  # deg from the Sun line within which a table is judged apart
-
-
-def is_mesh(name: str) -> bool:
-    """Whether a name is that of a file of facets, by its ending; else it is a scene's."""
-    return Path(name).suffix.lower() in FORMATS or (Path(name).is_file() and Path(name).suffix.lower() != ".toml")
 
 
 def shape_of_file(
@@ -110,7 +105,9 @@ class Report:
         force, torque = light_table.exact(self.shape, u, self.caster)
         # of a curved film the facets are not the truth, nor what is read: the difference of their tensors is the films'
         width = light_table.width_of(self.shape)
-        smooth, rough = ((tensors(self.shape, "front", kind), tensors(self.shape, "back", kind)) for kind in (True, False))
+        smooth, rough = (
+            (tensors(self.shape, "front", kind), tensors(self.shape, "back", kind)) for kind in (True, False)
+        )
         for one, sign in ((smooth, 1.0), (rough, -1.0)):
             more, turn = light_table.by_tensors(*one, width, u)
             force, torque = force + sign * more, torque + sign * turn
@@ -158,9 +155,11 @@ class Report:
     def words(self) -> str:
         """Everything, for a person."""
         facts, wrong = self.facts(), self.errors
-        lines = [f"{self.name}: {len(self.shape.parts)} parts, {facts['facets']} facets, {facts['size_m']:.4g} m"]
+        count = "1 part" if len(self.shape.parts) == 1 else f"{len(self.shape.parts)} parts"
+        lines = [f"{self.name}: {count}, {facts['facets']} facets, {facts['size_m']:.4g} m"]
         for part in facts["parts"]:
-            made = f"b {_numbers(part['front'])}, back {_numbers(part['back'])}" if part["back"] else "closed, b " + _numbers(part["front"])
+            front, back = _numbers(part["front"]), part["back"]
+            made = f"b {front}, back {_numbers(back)}" if back else f"closed, b {front}"
             lines.append(f"  {part['name']:<12} {part['facets']:>7} facets {part['area_m2']:>12.6g} m²  {made}")
         lines += [f"  {note}" for note in facts["notes"]]
         lines.append("Light at 1 au, body axes, +z away from the Sun, torque about the origin:")
@@ -174,8 +173,8 @@ class Report:
         lines += [
             f"Tensors: 55 numbers a side; facing the Sun {wrong['tensors_facing']:.1e} of 2 P A from the facets",
             f"Table: 6 x {facts['cells']} x {facts['cells']} cells, {self.interpolation}, {rays}; at {LOOKS} random "
-            f"directions it is {wrong['table_force']:.1e} of 2 P A off at most ({wrong['table_force_within_60_deg']:.1e} "
-            f"within {CLOSE:g} deg of the Sun), rms {wrong['table_force_rms']:.1e}",
+            f"directions it is {wrong['table_force']:.1e} of 2 P A off at most "
+            f"({wrong['table_force_within_60_deg']:.1e} within {CLOSE:g} deg of the Sun), rms {wrong['table_force_rms']:.1e}",
         ]
         return "\n".join(lines)
 
@@ -203,7 +202,7 @@ class Report:
         return "\n\n".join(
             [
                 f"**{Path(self.name).name}** in sunlight at 1 au, over the pitch angle.",
-                f"Facets: dark in the shade, violet to orange by the pressure of light, up to {strongest * 1e6:.2f} µPa. "
+                f"Facets: dark in the shade, violet to orange by the pressure of light, to {strongest * 1e6:.2f} µPa. "
                 "Orange arrow: the force, from its centre of pressure. Yellow: the light.",
                 "```\n" + "\n".join(lines) + "\n```",
             ]

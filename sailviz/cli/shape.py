@@ -1,4 +1,4 @@
-"""The command that says what light does to a shape: the sail of a file of facets, or of a scene."""
+"""The command that says what light does to a shape: a file of facets."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("file", metavar="FILE|SCENE")
+@click.argument("file", metavar="FILE")
 @click.option("--unit", metavar="UNIT", help="m, cm, mm, in, ft or km: of STL, OBJ and PLY, which have none.")
 @click.option("--front", default="-z", show_default=True, metavar="AXIS", help="Axis of the file that the front faces.")
 @click.option("--film", default="ideal", show_default=True, help="Of every film: a name, or b1,b2,b3.")
@@ -29,7 +29,9 @@ if TYPE_CHECKING:
 @click.option("--cells", type=int, default=32, show_default=True, help="Along a side of the table's cube, even.")
 @click.option("--interpolation", type=click.Choice(["bilinear", "bicubic"]), default="bilinear", show_default=True)
 @click.option("--no-shadow", is_flag=True, help="Let no part shade another.")
-@click.option("-o", "--output", metavar="FILE.rrd", help="Record the facets coloured by pressure, over the pitch angle.")
+@click.option(
+    "-o", "--output", metavar="FILE.rrd", help="Record the facets coloured by pressure, over the pitch angle."
+)
 @click.option("--json", "as_json", is_flag=True, help="Print what a script can read.")
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
 def shape(
@@ -49,7 +51,7 @@ def shape(
     """Say what light does to a shape: its area and parts, force and centre of pressure facing the Sun and at 35 deg,
     and how well tensors and table say it.
 
-    FILE is an STL, OBJ, GLB, PLY or 3MF file, or a scene whose sail has a shape. Body axes: +z away from the Sun.
+    FILE is an STL, OBJ, GLB, PLY or 3MF file. Body axes: +z away from the Sun.
     """
     from sailviz.errors import SailvizError
     from sailviz.files import check
@@ -78,10 +80,8 @@ def shape(
 def _report(
     file: str, materials: dict[str, Any], cells: int, interpolation: str, shadow: bool, progress: Any
 ) -> Report:
-    """The report of a file, or of a scene."""
+    """The report of a file."""
     from sailviz.checks import shape_report
 
-    if shape_report.is_mesh(file):
-        shape = shape_report.shape_of_file(file, **materials)
-        return shape_report.report(file, shape, cells, interpolation, shadow, progress)
-    return shape_report.report_of_scene(file, progress)
+    shape = shape_report.shape_of_file(file, **materials)
+    return shape_report.report(file, shape, cells, interpolation, shadow, progress)

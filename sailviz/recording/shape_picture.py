@@ -50,7 +50,9 @@ def record_shape(shape: LitShape, path: str | os.PathLike[str]) -> None:
     sinks = resolve([path])
     corners = shape.corners.reshape(-1, 3)
     size = float(np.ptp(corners, axis=0).max())
-    identity = hashlib.sha256(shape.title.encode() + f4(corners).tobytes() + f4(shape.pressure).tobytes()).hexdigest()[:16]
+    identity = hashlib.sha256(shape.title.encode() + f4(corners).tobytes() + f4(shape.pressure).tobytes()).hexdigest()[
+        :16
+    ]
     stream = rr.RecordingStream(f"sailviz_shape_{identity[:8]}", recording_id=identity, send_properties=False)
     stream.set_log_time_enabled(False)
     stream.set_log_tick_enabled(False)

@@ -59,9 +59,7 @@ def table_of(
     found = None if file is None else _read(file, count)
     if found is not None:
         return LightTable(found, ray_caster() if shadow and may_shade(shape) else "none")
-    made = light_table.build(
-        shape, cells, shadow=shadow, interpolation=interpolation, law=law, progress=progress
-    )
+    made = light_table.build(shape, cells, shadow=shadow, interpolation=interpolation, law=law, progress=progress)
     if file is not None:
         _write(file, made.numbers)
     return made
@@ -71,7 +69,11 @@ def _read(file: Path, count: int) -> np.ndarray | None:
     """The numbers of a whole file of one's own; None for any other."""
     try:
         facts = file.lstat()
-        if not file.is_file() or file.is_symlink() or (hasattr(os, "geteuid") and facts.st_uid not in (0, os.geteuid())):
+        if (
+            not file.is_file()
+            or file.is_symlink()
+            or (hasattr(os, "geteuid") and facts.st_uid not in (0, os.geteuid()))
+        ):
             return None
         if facts.st_size != SIGN + 8 * count:
             return None

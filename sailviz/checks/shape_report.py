@@ -61,8 +61,8 @@ def _part(word: str) -> tuple[str, str]:
 def surface_named(film: str, back: str, closed: bool) -> Surface:
     """A surface by words. ShapeError for a word that is none."""
     try:
-        front = film_named(film)
-        return Surface(front) if closed else Surface(front, back_named(film, back))
+        front = Coefficients(*film_named(film))
+        return Surface(front) if closed else Surface(front, Coefficients(*back_named(film, back)))
     except ValueError as error:
         raise ShapeError(str(error)) from None
 
@@ -174,7 +174,8 @@ class Report:
             f"Tensors: 55 numbers a side; facing the Sun {wrong['tensors_facing']:.1e} of 2 P A from the facets",
             f"Table: 6 x {facts['cells']} x {facts['cells']} cells, {self.interpolation}, {rays}; at {LOOKS} random "
             f"directions it is {wrong['table_force']:.1e} of 2 P A off at most "
-            f"({wrong['table_force_within_60_deg']:.1e} within {CLOSE:g} deg of the Sun), rms {wrong['table_force_rms']:.1e}",
+            f"({wrong['table_force_within_60_deg']:.1e} within {CLOSE:g} deg of the Sun), "
+            f"rms {wrong['table_force_rms']:.1e}",
         ]
         return "\n".join(lines)
 

@@ -21,6 +21,7 @@ from sailviz.cli.shared import INTERRUPTED, UNREAD, bearable, tell
 COMMANDS = {  # name, which is also that of the module -> function there
     "check": "check",
     "compare": "compare",
+    "deorbit": "deorbit",
     "digest": "digest",
     "export": "export",
     "figure": "figure",

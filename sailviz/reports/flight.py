@@ -12,11 +12,11 @@ import numpy as np
 
 from sailviz.checks.expectations import Judge, Verdict
 from sailviz.constants import RADIUS_EARTH, YEAR
+from sailviz.deorbits.companions import Companion, companions_of
+from sailviz.deorbits.disposal import LOW_ORBIT, NOT_COVERED, RULES, Descent, descent_of, rule_rows
 from sailviz.errors import RecordingError, SceneError
 from sailviz.recording import Recording, info, read
 from sailviz.recording.recorded_run import run_of
-from sailviz.reports.companions import Companion, companions_of
-from sailviz.reports.disposal import LOW_ORBIT, NOT_COVERED, RULES, Descent, descent_of, rule_rows
 from sailviz.reports.page import Page, Section, Table
 from sailviz.reports.pictures import pictures_of
 from sailviz.run.arrays import Run

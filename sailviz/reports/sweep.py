@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sailviz.deorbits.disposal import DOWN, NOT_COVERED, RULES, shares_within
 from sailviz.errors import RecordingError
-from sailviz.reports.disposal import DOWN, NOT_COVERED, RULES, shares_within
 from sailviz.reports.page import Page, Section, Table
 from sailviz.sweeps.censoring import AT_LEAST, Number, bounded, statistics
 from sailviz.sweeps.flight import FAILED

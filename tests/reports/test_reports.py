@@ -16,7 +16,7 @@ from sailviz import load_scene, read, record, simulate, sweep
 from sailviz.cli import main
 from sailviz.constants import RADIUS_EARTH, YEAR
 from sailviz.recording.views.screenshot import has_vulkan
-from sailviz.reports.disposal import RULES, Descent, shares_within
+from sailviz.deorbits.disposal import RULES, Descent, shares_within
 from sailviz.reports.flight import flight_page
 from sailviz.reports.sweep import sweep_page
 from sailviz.words import duration

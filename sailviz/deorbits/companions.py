@@ -6,15 +6,16 @@ from copy import deepcopy
 from dataclasses import dataclass
 from typing import Any
 
+from sailviz.deorbits.disposal import Descent, descent_of
 from sailviz.errors import SailvizError
-from sailviz.reports.disposal import Descent, descent_of
 from sailviz.run.arrays import Run
-from sailviz.scene import Scene, load_scene
+from sailviz.scene import Scene
+from sailviz.scene.loading import build_scene
 
 SUNS = (
     ("quiet Sun, F10.7 = 70 sfu", 70.0),
     ("mean Sun, F10.7 = 140 sfu", 140.0),
-    ("active Sun, F10.7 = 210 sfu", 210.0),
+    ("active Sun, F10.7 = 190 sfu", 190.0),
 )
 ROWS = 40  # of a flight of which the end alone is told
 NOT_FLOWN_BESIDE = (
@@ -91,7 +92,7 @@ def _flown(name: str, scene: Scene, values: dict[str, Any], tables: dict[str, An
     }
     raw["propagation"] = propagation | {"outputs": ROWS}
     try:
-        run: Run = simulate(load_scene(raw).with_values(values))
+        run: Run = simulate(build_scene(raw, values, scene.text, scene.source))
     except SailvizError as error:
         return Companion(name, None, f"not flown: {str(error).splitlines()[-1].strip()}")
     descent = descent_of(run)

@@ -4,6 +4,13 @@ The page needs no other file, no network and no script, and prints from any brow
 extra `report`: pip install "sailviz[report]".
 """
 
-from sailviz.reports.write import write_report
+from typing import TYPE_CHECKING
 
-__all__ = ["write_report"]
+from sailviz.lazy import lazily
+
+if TYPE_CHECKING:
+    from sailviz.reports.write import Report as Report
+    from sailviz.reports.write import write_report as write_report
+
+_HOMES = {"Report": "write", "write_report": "write"}
+__getattr__, __dir__, __all__ = lazily(__name__, _HOMES)

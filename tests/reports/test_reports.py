@@ -15,8 +15,8 @@ from click.testing import CliRunner
 from sailviz import load_scene, read, record, simulate, sweep
 from sailviz.cli import main
 from sailviz.constants import RADIUS_EARTH, YEAR
-from sailviz.recording.views.screenshot import has_vulkan
 from sailviz.deorbits.disposal import RULES, Descent, shares_within
+from sailviz.recording.views.screenshot import has_vulkan
 from sailviz.reports.flight import flight_page
 from sailviz.reports.sweep import sweep_page
 from sailviz.words import duration

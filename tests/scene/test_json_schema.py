@@ -9,7 +9,7 @@ from datetime import date, datetime
 import jsonschema
 import pytest
 
-from sailviz.scene.loading import schema
+from sailviz.scene.loading import load_scene, schema
 from sailviz.shipped import shipped_scenes
 from sailviz.units import UNITS
 
@@ -81,3 +81,36 @@ def test_a_quantity_with_words_takes_each_of_them_without_a_unit_and_numbers_wit
         ({"reference": "middle"}, False),
     ):
         assert VALIDATOR.is_valid(with_parts(environment={"solar_wind": wind | more})) == good, more
+
+
+MANY = ("length", "time", "angle", "speed", "acceleration", "mass", "area", "voltage", "pressure", "force")
+
+
+def in_other_units(table):
+    """The same tables, every quantity in the last of its units that is not the one it has."""
+    if isinstance(table, list):
+        return [in_other_units(part) for part in table]
+    if not isinstance(table, dict):
+        return table
+    made = {}
+    for key, value in table.items():
+        fits = [(len(unit), name, unit) for name in MANY for unit in UNITS[name] if key.endswith(f"_{unit}")]
+        if not fits or isinstance(value, (str, bool)) or key.startswith("wire"):  # a thickness, whose units are others
+            made[key] = in_other_units(value)
+            continue
+        _, dimension, unit = max(fits)
+        other = [name for name in UNITS[dimension] if name != unit][-1]
+        made[key.removesuffix(unit) + other] = scaled(value, UNITS[dimension][unit] / UNITS[dimension][other])
+    return made
+
+
+def scaled(value, factor):
+    return [scaled(part, factor) for part in value] if isinstance(value, list) else value * factor
+
+
+@pytest.mark.parametrize("name", sorted(RAW)[::5])
+def test_a_scene_in_other_units_is_the_same_to_schema_and_checker(name):
+    moved = in_other_units(RAW[name])
+    assert plain(moved) != plain(RAW[name])
+    assert VALIDATOR.is_valid(plain(moved))
+    assert load_scene(moved).propagation.duration == pytest.approx(load_scene(RAW[name]).propagation.duration)

@@ -8,12 +8,28 @@ from typing import TYPE_CHECKING
 from sailviz.lazy import lazily
 
 if TYPE_CHECKING:
+    from sailviz.exchange.aem import AttitudeRows as AttitudeRows
+    from sailviz.exchange.aem import read_aem as read_aem
+    from sailviz.exchange.aem import write_aem as write_aem
+    from sailviz.exchange.earth_frames import to_gcrf as to_gcrf
     from sailviz.exchange.element_sets import ElementSet as ElementSet
     from sailviz.exchange.element_sets import read_element_sets as read_element_sets
+    from sailviz.exchange.omm import write_omm as write_omm
+    from sailviz.exchange.opm import OrbitParameters as OrbitParameters
+    from sailviz.exchange.opm import read_opm as read_opm
+    from sailviz.exchange.opm import write_opm as write_opm
     from sailviz.exchange.small_bodies import SmallBody as SmallBody
     from sailviz.exchange.small_bodies import read_small_body as read_small_body
 
 _HOMES = {
+    "AttitudeRows": "aem",
+    "read_aem": "aem",
+    "write_aem": "aem",
+    "to_gcrf": "earth_frames",
+    "write_omm": "omm",
+    "OrbitParameters": "opm",
+    "read_opm": "opm",
+    "write_opm": "opm",
     "ElementSet": "element_sets",
     "read_element_sets": "element_sets",
     "SmallBody": "small_bodies",

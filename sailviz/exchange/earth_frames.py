@@ -10,6 +10,8 @@ chapter 5; layout of finals2000A by the IERS.
 from __future__ import annotations
 
 import re
+from datetime import date
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -90,8 +92,7 @@ def read_orientation(path: str | Path) -> EarthOrientation:
     if len(days) < 2 or np.any(np.diff(days) <= 0) or not np.isfinite(rows).all():
         raise ValueError(f"{path} is no file of the Earth's orientation (finals2000A): days in order were due")
     utc = (np.array(days, np.int64) - MJD_1970) * DAY
-    first_known = since_1970_of_leaps()[0]
-    kept = utc >= first_known
+    kept = utc >= _steps()[0]
     leap = _leap_seconds(utc[kept])
     xp, yp, ut1 = np.array(rows)[kept].T
     return EarthOrientation(utc[kept] + leap * 10**9, xp * ARCSECOND, yp * ARCSECOND, ut1 - leap)
@@ -99,31 +100,28 @@ def read_orientation(path: str | Path) -> EarthOrientation:
 
 def shipped_orientation() -> EarthOrientation | None:
     """The one of the package skyfield-data (extra `ephemeris`), None without it."""
-    try:
-        from skyfield_data import get_skyfield_data_path
-    except ModuleNotFoundError:
+    home = find_spec("skyfield_data")
+    if home is None or home.origin is None:
         return None
-    path = Path(get_skyfield_data_path()) / "finals2000A.all"
+    path = Path(home.origin).parent / "data" / "finals2000A.all"
     return read_orientation(path) if path.is_file() else None
 
 
-def since_1970_of_leaps() -> Instants:
+def _steps() -> Instants:
     """ns of UTC labels (k,) from which on each number of leap seconds holds."""
-    from datetime import date
-
     return np.array([since_1970(date(year, month, 1), 0) for year, month, _ in LEAP_SECONDS], np.int64)
 
 
 def _leap_seconds(utc: Instants) -> Instants:
     """TAI - UTC (n,) s of labels of UTC (n,) ns."""
-    step = np.searchsorted(since_1970_of_leaps(), utc, side="right") - 1
+    step = np.searchsorted(_steps(), utc, side="right") - 1
     return np.array([offset for _, _, offset in LEAP_SECONDS], np.int64)[np.maximum(step, 0)]
 
 
 def _utc_less_tai(instants: Instants) -> Floats:
     """UTC - TAI (n,) s at instants."""
     ahead = np.array([offset for _, _, offset in LEAP_SECONDS], np.int64)
-    step = np.searchsorted(since_1970_of_leaps() + ahead * 10**9, instants, side="right") - 1
+    step = np.searchsorted(_steps() + ahead * 10**9, instants, side="right") - 1
     return -ahead[np.maximum(step, 0)].astype(float)
 
 
@@ -163,7 +161,7 @@ def from_gcrf_matrix(frame: str, instants: Instants) -> Floats:
     erfa, tt = _erfa(), _tt(np.asarray(instants, np.int64))
     if name in ("EME2000", "ECLIPJ2000"):
         bias = np.asarray(erfa.bp00(*tt)[0])
-        return bias if name == "EME2000" else np.asarray(turn_x(OBLIQUITY)).T @ bias
+        return bias if name == "EME2000" else np.asarray(turn_x(OBLIQUITY)) @ bias
     if name == "MOD":
         return np.asarray(erfa.pmat06(*tt))
     if name == "TOD":

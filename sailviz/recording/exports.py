@@ -4,7 +4,7 @@ csv, parquet   one table: step, time_s, utc where there is an epoch, then entity
                second file beside it, NAME.events.csv, and each ensemble in NAME.ensemble.OWN_NAME.csv; each flight
                beside the first, on its own clock, in NAME.flight.OWN_NAME.csv
 npz            every column under its own key, e.g. state.position_m (n, 3), events.time_s, scene.identity
-oem, spk       position and velocity (orbit_files.py); after a gap and where the velocity jumps a new segment
+oem, spk, aem  position and velocity, or the attitude (orbit_files.py); a new segment after a gap and at a jump
 """
 
 from __future__ import annotations
@@ -56,12 +56,14 @@ def export(
         if to != "spk" and ids_named(craft_id, centre_id):
             raise RecordingError(f"craft and centre have NAIF ids in an SPK; {to} knows none")
         if to in ORBIT_FILES:
-            if wanted and wanted != ("/state",):
-                what = f"an {to.upper()} holds position and velocity"
-                raise RecordingError(f"{what}; it takes no other entity than /state")
+            held, content = ("/attitude", "the attitude") if to == "aem" else ("/state", "position and velocity")
+            if wanted and wanted != (held,):
+                raise RecordingError(f"an {to.upper()} holds {content}; it takes no other entity than {held}")
             return (write_orbit(data, path, to, frame, craft_id, centre_id),)
         if frame:
-            raise RecordingError(f"a frame is named in an OEM or SPK; {to} holds the numbers in the frame of the run")
+            raise RecordingError(
+                f"a frame is named in an OEM, AEM or SPK; {to} holds the numbers in the frame of the run"
+            )
         if to == "npz":
             return (written_whole(path, lambda part: write_npz(part, arrays(data, wanted))),)
         return _write_tables(data, path, to, wanted)

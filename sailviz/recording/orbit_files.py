@@ -2,6 +2,7 @@
 that others know.
 
 oem   CCSDS 502.0-B, dated in UTC
+aem   CCSDS 504.0-B, version 2: the attitude of the craft, dated in UTC
 spk   a kernel of SPICE, segments of type 13, dated in TDB: the file has the ending bsp
 
 In both a new segment begins after a gap and where the velocity jumps. A run says in which of its own frames it was
@@ -12,14 +13,16 @@ date round the Earth, and in a frame that must be named round another body: noth
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from sailviz import frames
 from sailviz.errors import RecordingError
-from sailviz.exchange import spk
+from sailviz.exchange import aem, spk
 from sailviz.recording.comparison.tables import Evidence, Table
+from sailviz.run import dates
 from sailviz.run import gaps as spans
 from sailviz.run.oem import ECLIPTIC, EQUATOR, SAME_PLACE, Ephemeris
 from sailviz.run.oem_writer import plain, write_oem
@@ -27,7 +30,7 @@ from sailviz.sky.bodies import BODIES
 from sailviz.sky.places import Sky, tdb_ahead
 from sailviz.version import __version__
 
-ORBIT_FILES = ("oem", "spk")
+ORBIT_FILES = ("oem", "spk", "aem")
 CRAFT = spk.CRAFT
 STATE = ("position_m", "velocity_m_s")
 TURNED = {EQUATOR: "icrf", ECLIPTIC: "ecliptic-j2000"}  # the frames that runs are turned to
@@ -64,6 +67,8 @@ def write_orbit(data: Evidence, path: Path, to: str, frame: str, craft_id: int, 
         raise RecordingError(f"{data.label}: its times do not increase, and {what} needs that")
     if to == "oem":
         return _oem(data, data.epoch, state, path, frame)
+    if to == "aem":
+        return _aem(data, data.epoch, state, path, frame)
     return _spk(data, data.epoch, state, path, frame, craft_id, centre_id)
 
 
@@ -106,6 +111,41 @@ def _oem(data: Evidence, epoch: np.datetime64, state: Table, path: Path, frame: 
         tuple((row, float(state.time[row + 1] - state.time[row])) for row in spans.last_rows(state.time, data.gaps)),
     )
     return write_oem(path, ephemeris, comments)
+
+
+def _aem(data: Evidence, epoch: np.datetime64, state: Table, path: Path, frame: str) -> Path:
+    """The attitude: from the axes of the message to those of the craft. Of two rows at one time the later counts."""
+    if "/attitude" not in data.entities:
+        raise RecordingError(f"{data.label} has no /attitude, and an AEM holds nothing else")
+    quaternion = data.table("/attitude").columns["quaternion"]
+    wanted = frame or (EQUATOR if data.frame else "")
+    axes = np.eye(3)
+    if data.frame or not frame:
+        along = replace(state, columns=dict.fromkeys(STATE, axes))
+        axes = _turned(data, epoch, along, wanted)[0].T  # from the axes of the run to those wanted
+    turn = np.broadcast_to(frames.quaternion(axes[None])[0], quaternion.shape)
+    instants = dates.instant_of(epoch) + np.round(state.time * 1e9).astype(np.int64)
+    kept = np.diff(instants, append=np.iinfo(np.int64).max) > 0
+    row_of = np.cumsum(kept) - 1  # of a row among those that are kept
+    begins = {0, *(int(row_of[row]) + 1 for row in spans.last_rows(state.time, data.gaps))}
+    title = str(data.facts.get("title", ""))
+    rows = aem.AttitudeRows(
+        plain(title).upper()[:60] or "TRAJECTORY",
+        str(data.facts.get("identity", "")) or "UNKNOWN",
+        wanted,
+        "UTC",
+        instants[kept],
+        product(turn, quaternion)[kept],
+        tuple(sorted(begins)),
+    )
+    return aem.write_aem(path, rows, dates.utc_texts(rows.instants), str(data.facts.get("body", "")).upper())
+
+
+def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Quaternions (n, 4) x y z w that turn by b, then by a."""
+    u, v, p, q = a[:, :3], b[:, :3], a[:, 3:], b[:, 3:]
+    vector = p * v + q * u + np.cross(u, v)
+    return np.hstack([vector, p * q - np.sum(u * v, axis=1, keepdims=True)])
 
 
 def _spk(

@@ -6,6 +6,7 @@ which is centimetres on the way round the Sun; the tests let it judge. Writing i
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
@@ -152,6 +153,20 @@ def read_oem(path: str | Path) -> Ephemeris:
     )
 
 
+def of_one_state(
+    about: tuple[str, str, str, str, str],
+    instant: int,
+    position: tuple[float, float, float],
+    velocity: tuple[float, float, float],
+    notes: tuple[str, ...] = (),
+) -> Ephemeris:
+    """A trajectory of one row. about : name, identity, centre, frame, time system; instant : ns of TAI; SI."""
+    name, identity, center, frame, system = about
+    epoch = dates.label_of(instant, system)
+    state = np.array([position], float), np.array([velocity], float)
+    return Ephemeris(name, identity, center, _frame(frame), system, epoch, np.zeros(1), *state, (), notes)
+
+
 def _lines(path: str | Path) -> list[str]:
     if Path(path).exists() and not Path(path).is_file():  # a pipe or a device may never end
         raise RecordingError(f"cannot read {path}: it is not a regular file")
@@ -189,7 +204,13 @@ def _blocks(lines: list[str], path: str | Path) -> tuple[list[_Block], list[str]
                 passed["covariances are passed over"] = None
         elif section == "meta":
             key, _, value = text.partition("=")
+            if key.strip().upper() == "REF_FRAME_EPOCH":
+                raise RecordingError(
+                    f"{path}, line {number}: a frame with an epoch of its own is not read here ({key})"
+                )
             blocks[-1].meta[key.strip().upper()] = value.strip()
+        elif re.fullmatch(r"(\s*\[[^\]]*\])+", text):  # the units of the columns
+            continue
         elif section == "data":
             if not blocks:
                 raise RecordingError(f"{path}, line {number}: states stand before the first META_START")

@@ -32,7 +32,7 @@ class TleStart(Section):
 
 class OemStart(Section):
     """Where an orbit ephemeris message has a craft at a date, by cubic Hermite interpolation between its rows; without
-    a date at the scene's epoch, or at its first row."""
+    a date at the scene's epoch, or at its first row. Of an orbit parameter message (OPM) its one state."""
 
     kind: Literal["oem"]
     file: str

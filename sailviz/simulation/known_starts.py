@@ -13,9 +13,8 @@ from sailviz.constants import DAY, MU_SUN
 from sailviz.ephemeris import seconds_since_j2000
 from sailviz.errors import Fault, RecordingError, SceneError
 from sailviz.exchange.small_bodies import J2000
-from sailviz.run import oem
 from sailviz.run.resample import at as resampled
-from sailviz.scene.conflicts.known_starts import element_set_of, small_body_of
+from sailviz.scene.conflicts.known_starts import element_set_of, read_states, small_body_of
 from sailviz.scene.known_starts import OemStart, PlanetStart, SmallBodyStart, TleStart
 from sailviz.scene.named_files import folder_of
 from sailviz.scene.sky import frame_of
@@ -96,7 +95,7 @@ OEM_FRAMES = {"EME2000": "icrf", "ICRF": "icrf", "GCRF": "icrf", "ECLIPJ2000": "
 def message(scene: Scene, start: OemStart, body: Body, design: None) -> State:
     """Between the rows around the epoch."""
     with _told(scene, "start.file"):
-        found = oem.read_oem(folder_of(scene) / start.file)
+        found = read_states(folder_of(scene) / start.file)
         if found.center != body.name.upper():
             raise ValueError(f"this flight is round {found.center.capitalize()}, and the scene is round {body.name}")
         if found.frame not in OEM_FRAMES:
@@ -113,11 +112,13 @@ def message(scene: Scene, start: OemStart, body: Body, design: None) -> State:
         gap = next((gap for gap in found.without_data if gap[0] < seconds < gap[1]), None)
         if gap is not None:
             raise ValueError(f"at this date, between {gap[0]:g} and {gap[1]:g} s after its first row, it has no data")
+    turn = to_scene(scene, OEM_FRAMES[found.frame])
+    if len(found.time) == 1:
+        return turn @ found.position[0], turn @ found.velocity[0]
     when = np.array([min(max(seconds, 0.0), last)])
     siblings = {"velocity_m_s": found.velocity}
     position = resampled(when, "position_m", found.time, found.position, siblings)[0]
     velocity = resampled(when, "velocity_m_s", found.time, found.velocity)[0]
-    turn = to_scene(scene, OEM_FRAMES[found.frame])
     return turn @ position, turn @ velocity
 
 

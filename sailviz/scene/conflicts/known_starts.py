@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from datetime import UTC, date, datetime
 from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from sailviz.scene.conflicts.answers import Faults
@@ -19,6 +20,7 @@ from sailviz.words import shown
 if TYPE_CHECKING:
     from sailviz.exchange.element_sets import ElementSet
     from sailviz.exchange.small_bodies import SmallBody
+    from sailviz.run.oem import Ephemeris
     from sailviz.scene.loading import Scene
 
 DAY = 86_400.0
@@ -88,13 +90,25 @@ def dated(scene: Scene) -> tuple[Scene, Faults]:
 
 def _first_row(scene: Scene, start: OemStart) -> datetime:
     from sailviz.errors import RecordingError
-    from sailviz.run.oem import read_oem
 
     try:
-        date = read_oem(folder_of(scene) / start.file).utc.astype("datetime64[us]").item()
+        date = read_states(folder_of(scene) / start.file).utc.astype("datetime64[us]").item()
     except RecordingError as error:
         raise ValueError(str(error).rstrip(".")) from None
     return _as_utc(date)
+
+
+def read_states(path: Path) -> Ephemeris:
+    """What a message has: the rows of an OEM, or the one state of an OPM. RecordingError, in one sentence."""
+    from sailviz.exchange.keywords import is_message
+    from sailviz.exchange.opm import read_opm
+    from sailviz.run.oem import of_one_state, read_oem
+
+    if not is_message(path, "OPM"):
+        return read_oem(path)
+    found = read_opm(path)
+    about = found.name, found.identity, found.center, found.frame, found.time_system
+    return of_one_state(about, found.instant, found.position, found.velocity, found.notes)
 
 
 def _as_utc(date: datetime) -> datetime:

@@ -131,6 +131,12 @@ class Scene(Section):
         copy._beside = ()
         return copy
 
+    def with_beside(self, beside: tuple[Devices, ...]) -> Scene:
+        """The scene with other devices beside its first one."""
+        copy = self.model_copy()
+        copy._beside = beside
+        return copy
+
     def resolved(self) -> dict[str, Any]:
         """Every value, defaults included, SI, ready for JSON. Keys that came later are left out where they are
         not said: what scenes were before they could be said, they still are."""

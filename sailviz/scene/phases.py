@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
-from pydantic import Field, ValidationError
+from pydantic import Discriminator, Field, Tag, ValidationError
 
-from sailviz.scene.device import ElectricSail, PlasmaBrake
+from sailviz.scene.device import Devices, ElectricSail, PlasmaBrake
 from sailviz.scene.events import Crossing
 from sailviz.scene.quantities import spellings
 from sailviz.scene.steering import Steering
@@ -41,6 +41,18 @@ class DeviceState(Section):
         return self.throttle if self.on else 0.0
 
 
+class StateOfOne(DeviceState):
+    """How one device in a list stands, and how it is steered: as before where that is not said."""
+
+    name: Annotated[str, Field(min_length=1)]
+    steering: Steering | None = None
+
+
+def _listed(value: Any) -> str:
+    """Whether a phase says how the device stands, or how each of several does."""
+    return "several" if isinstance(value, (list, tuple)) else "one"
+
+
 class PhasePropagation(Section):
     """How the rows of a phase come, and how accurately; what is not said is that of [propagation]."""
 
@@ -56,8 +68,27 @@ class Phase(Section):
     name: Annotated[str, Field(min_length=1)]
     until: str | Until | None = None
     steering: Steering | None = None
-    device: DeviceState = DeviceState()
+    device: Annotated[
+        Annotated[DeviceState, Tag("one")] | Annotated[list[StateOfOne], Tag("several")], Discriminator(_listed)
+    ] = DeviceState()
     propagation: PhasePropagation = PhasePropagation()
+
+    @property
+    def named(self) -> list[StateOfOne]:
+        """How devices in a list stand, each by its name."""
+        return self.device if isinstance(self.device, list) else []
+
+    def state_of(self, device: Devices) -> DeviceState:
+        """How a device stands; those that are not named as if there were no phases."""
+        if isinstance(self.device, DeviceState):
+            return self.device
+        return next((state for state in self.device if state.name == device.name), DeviceState())
+
+
+def steering_of_first(scene: Scene, phase: Phase) -> Steering | None:
+    """What a phase says of the steering of the device that [steering] steers; None where it says nothing."""
+    own = phase.state_of(scene.device)
+    return own.steering if isinstance(own, StateOfOne) and own.steering is not None else phase.steering
 
 
 def end_of(name: str) -> str:
@@ -101,13 +132,11 @@ def equation(key: str, number: str) -> Until:
 def scene_of(scene: Scene, phase: Phase) -> Scene:
     """The scene that holds during a phase: its steering, its device and its tolerance in place of the whole's."""
     run, own = scene.propagation, phase.propagation
-    device = scene.device
-    if phase.device.voltage is not None and isinstance(device, (ElectricSail, PlasmaBrake)):
-        device = device.model_copy(update={"voltage": phase.device.voltage})
-    return scene.model_copy(
+    steering = steering_of_first(scene, phase)
+    found = scene.model_copy(
         update={
-            "steering": scene.steering if phase.steering is None else phase.steering,
-            "device": device,
+            "steering": scene.steering if steering is None else steering,
+            "device": _as_in(phase, scene.device),
             "propagation": run.model_copy(
                 update={
                     "tolerance": run.tolerance if own.tolerance is None else own.tolerance,
@@ -116,3 +145,14 @@ def scene_of(scene: Scene, phase: Phase) -> Scene:
             ),
         }
     )
+    return found.with_beside(tuple(_as_in(phase, device) for device in scene.beside)) if scene.beside else found
+
+
+def _as_in(phase: Phase, device: Devices) -> Devices:
+    """A device with what a phase says of it; how the first one is steered the scene says."""
+    state, changes = phase.state_of(device), dict[str, Any]()
+    if state.voltage is not None and isinstance(device, (ElectricSail, PlasmaBrake)):
+        changes["voltage"] = state.voltage
+    if isinstance(state, StateOfOne) and state.steering is not None and device.steering is not None:
+        changes["steering"] = state.steering
+    return device.model_copy(update=changes) if changes else device

@@ -71,6 +71,11 @@ def schedules(scene: Scene, table: Array | None) -> tuple[Schedule, list[Schedul
     return replace(first, breaks=breaks, factors=first.factors[at], switches=switches, histories=histories), others
 
 
+def in_phase(times: list[Schedule], levels: list[float]) -> list[Schedule]:
+    """The thrust of each device beside the first one at its level in a phase."""
+    return [replace(each, factors=each.factors * level) for each, level in zip(times, levels, strict=True)]
+
+
 def _called(name: str, switches: Switches) -> Switches:
     """Switches by the name of the device that they are of."""
     return tuple((time, f"{name} {word.removeprefix('thrust ')}") for time, word in switches)

@@ -15,6 +15,7 @@ import numpy as np
 from sailviz.propagate import stepping
 from sailviz.propagate.patience import Patience
 from sailviz.run.arrays import Event, Phase, Run, Setting
+from sailviz.scene.phases import Phase as ScenePhase
 from sailviz.scene.phases import end_of
 from sailviz.simulation.accuracy import accuracy_of_phases
 from sailviz.simulation.integration import begun
@@ -153,10 +154,7 @@ def _setting(scene: Scene, legs: list[Flown], rows: int, drawn: bool) -> tuple[S
     whole = replace(legs[0].plan, scene=scene)
     planets = planets_in_view(whole, max(leg.farthest for leg in legs)) if drawn else {}
     never = [Phase(phase.name, np.nan, np.nan) for phase in scene.phase[len(legs) :]]
-    reached = [
-        Phase(leg.name, leg.plan.begin, leg.end, _words(leg.plan, scene.phase[i].device.level))
-        for i, leg in enumerate(legs)
-    ]
+    reached = [Phase(leg.name, leg.plan.begin, leg.end, _words(leg.plan, scene.phase[i])) for i, leg in enumerate(legs)]
     setting = setting_of(whole, planets, rows, (), False)
     limited = [replace(leg.plan, limit=leg.end) for leg in legs]
     return (
@@ -170,12 +168,17 @@ def _setting(scene: Scene, legs: list[Flown], rows: int, drawn: bool) -> tuple[S
     )
 
 
-def _words(p: Plan, level: float) -> str:
+def _words(p: Plan, phase: ScenePhase) -> str:
     """What holds in a phase."""
+    level = phase.state_of(p.scene.device).level
     steering = p.scene.steering
     kind = steering.kind if steering is not None else ""
     goal = getattr(steering, "goal", "")
     said = f"{kind}, {goal}" if goal else kind
+    if p.scene.place is not None:
+        levels = [(device.name, phase.state_of(device).level) for device in p.scene.devices]
+        told = [f"{name} {'off' if share == 0.0 else f'at {100 * share:.3g} %'}" for name, share in levels if share < 1]
+        return ", ".join(filter(None, [said if level else "", *told]))
     thrust = "off" if level == 0.0 else "" if level == 1.0 else f"{100 * level:.3g} % of the thrust"
     return ", ".join(filter(None, [said if level else "", thrust]))
 
@@ -186,9 +189,11 @@ def _at_end(scene: Scene, leg: Flown, legs: list[Flown], noted: list[Event]) -> 
     if not any(event.name == end_of(leg.name) for event in noted):
         found.append(Event(end_of(leg.name), leg.end, leg.state.copy()))
     number = legs.index(leg)
-    before, after = (scene.phase[i].device.level > 0.0 for i in (number, number + 1))
-    if before != after and leg.in_use:
-        found.append(Event("thrust on" if after else "thrust off", leg.end, leg.state.copy()))
+    for device in scene.devices:
+        before, after = (scene.phase[i].state_of(device).level > 0.0 for i in (number, number + 1))
+        if before != after and leg.in_use:
+            what = "thrust" if scene.place is None else device.name
+            found.append(Event(f"{what} on" if after else f"{what} off", leg.end, leg.state.copy()))
     return found
 
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from sailviz.simulation.quasi_circular import QuasiCircular
     from sailviz.simulation.start import Design
 from sailviz.simulation.approximations import first_orders, quasi_circular_decay
-from sailviz.simulation.beside import BesideDevice, by_its_force, devices_beside, named_switches, schedules
+from sailviz.simulation.beside import BesideDevice, by_its_force, devices_beside, in_phase, named_switches, schedules
 from sailviz.simulation.bodies import body_of, epoch_of
 from sailviz.simulation.device import device_of, strength_or_none
 from sailviz.simulation.events import latest_end, quantities_watched, watched
@@ -109,11 +109,13 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
     if steering is not None:
         steered = LoweredSteering(attitude.USER)
     when, times_beside = schedules(scene, steered.table)
+    if phase is not None:
+        times_beside = in_phase(times_beside, [phase.state_of(device).level for device in scene.beside])
     own_switches = named_switches(scene, steered.switches)
     when = replace(when, switches=tuple(sorted({*when.switches, *own_switches})))
     beside = devices_beside(scene, position, velocity, times_beside, sky is not None)
     if phase is not None:
-        when = replace(when, factors=when.factors * phase.device.level)
+        when = replace(when, factors=when.factors * phase.state_of(scene.device).level)
     names, watching = watched(scene, body, phase)
     place = Place(scene, body, epoch_of(scene))
     around = [record.lower(part, place) for part, record in parts_of(scene)]

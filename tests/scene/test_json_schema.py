@@ -40,6 +40,16 @@ def test_json_schema_accepts_shipped_scenes_and_rejects_a_misspelt_key(name):
         assert not VALIDATOR.is_valid(bad)
 
 
+def test_schema_knows_devices_in_phases_each_by_its_name():
+    phases = [
+        {"name": "a", "until": "time_d = 3", "device": [{"name": "engine", "on": False}]},
+        {"name": "b", "device": {"throttle": 0.5}},
+    ]
+    assert VALIDATOR.is_valid(SMALL | {"phase": phases})
+    phases[0]["device"][0]["oon"] = True
+    assert not VALIDATOR.is_valid(SMALL | {"phase": phases})
+
+
 def test_schema_wants_a_unit_and_only_one():
     VALIDATOR.check_schema(schema())
     assert VALIDATOR.is_valid(SMALL)

@@ -52,7 +52,10 @@ def switches(setting: Setting, events: tuple[Event, ...]) -> list[tuple[str, Eve
 
 def at_a_switch(setting: Setting, event: Event) -> bool:
     """Whether an event is part of the change from a phase to the next, which has a name of its own."""
-    parts = {f"end of {phase.name}" for phase in setting.phases} | {"thrust on", "thrust off"}
+    told = setting.resolved.get("device")
+    devices = ["thrust", *(device.get("name") for device in (told if isinstance(told, list) else []))]
+    parts = {f"end of {phase.name}" for phase in setting.phases}
+    parts |= {f"{name} {word}" for name in devices for word in ("on", "off")}
     return event.name in parts and any(event.time == phase.start for phase in reached(setting)[1:])
 
 

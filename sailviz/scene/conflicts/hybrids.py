@@ -12,6 +12,7 @@ from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.records import start_of
 from sailviz.scene.conflicts.sky import light, steered_by_light
 from sailviz.scene.device import Devices, NoDevice, PlasmaBrake, Thruster, control_of
+from sailviz.scene.phases import Until, until_of
 from sailviz.words import duration, shown
 
 if TYPE_CHECKING:
@@ -52,10 +53,26 @@ def together(scene: Scene) -> Faults:
         for stem in (stem for stem in event.quantities() if stem in OF_ALL_TOGETHER):
             words = f"{stem.replace('_', ' ')} is that of all devices together, which no event watches"
             found.append((f"event[{i}].{stem}", words))
+    found += _ends_of_phases(scene)
     burnt = burnt_out(scene)
     if burnt is not None:
         words = f"all thrusters together burn the whole mass in {duration(burnt)}: shorten the run, or end the thrust"
         found.append(("device.active", f"{words} with active"))
+    return found
+
+
+def _ends_of_phases(scene: Scene) -> Faults:
+    """No phase ends by what all devices make together."""
+    found: Faults = []
+    for i, phase in enumerate(scene.phase):
+        try:
+            until = until_of(phase)
+        except ValueError:  # which the questions about phases tell
+            continue
+        quantities = until.quantities() if isinstance(until, Until) else {}
+        for stem in (stem for stem in quantities if stem in OF_ALL_TOGETHER):
+            words = f"{stem.replace('_', ' ')} is that of all devices together, which ends no phase"
+            found.append((f"phase[{i}].until", words))
     return found
 
 

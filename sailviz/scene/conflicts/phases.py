@@ -6,11 +6,12 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from sailviz.scene.conflicts.answers import Faults
+from sailviz.scene.conflicts.hybrids import beside_conflicts
 from sailviz.scene.conflicts.limits import too_many
 from sailviz.scene.conflicts.moments import unknown_here
 from sailviz.scene.conflicts.records import device_of, steering_of
-from sailviz.scene.device import ElectricSail, NoDevice, PlasmaBrake, VoltageControl, control_of
-from sailviz.scene.phases import Phase, Until, scene_of, until_of
+from sailviz.scene.device import Devices, ElectricSail, NoDevice, PlasmaBrake, VoltageControl, control_of
+from sailviz.scene.phases import DeviceState, Phase, Until, scene_of, steering_of_first, until_of
 from sailviz.scene.steering import SmoothedSteering
 from sailviz.words import nearest, shown
 
@@ -38,7 +39,7 @@ def phases(scene: Scene) -> Faults:
                 words = "times count from the start of the run, and this one is not after that of a phase before"
                 found.append((_place_of_time(phase, place), words))
             latest = max(latest, until.time)
-        found += _device(scene, phase, place)
+        found += _devices(scene, phase, place)
         found += _steering(scene, phase, place)
         own = phase.propagation
         if own.outputs is not None and own.output_interval is not None:
@@ -68,9 +69,6 @@ def _not_in_phases(scene: Scene) -> Faults:
     if scene.approximation:
         words = "an analytic solution knows one law of thrust for the whole flight: it goes with no [[phase]]"
         found.append(("approximation[0]", words))
-    if scene.place is not None:
-        words = "a phase sets the state and the steering of one device: a list [[device]] goes with no [[phase]]"
-        found.append(("device", words))
     if isinstance(control_of(scene.device), VoltageControl):
         words = "a voltage controller steers by what it set before, which no phase hands on: it goes with no [[phase]]"
         found.append(("device.control", words))
@@ -121,14 +119,54 @@ def _end_at_event(scene: Scene, name: str, where: str) -> Faults:
     return [(where, f"{shown(name)} stops the run: no phase can follow")] if known[name] else []
 
 
-def _device(scene: Scene, phase: Phase, place: str) -> Faults:
-    """Whether the device can stand as a phase wants it."""
-    device, state, found = scene.device, phase.device, Faults()
+def _devices(scene: Scene, phase: Phase, place: str) -> Faults:
+    """Whether the devices can stand as a phase wants them."""
+    if isinstance(phase.device, DeviceState):
+        if scene.place is None or phase.device == DeviceState():
+            return _device(scene.device, phase.device, f"{place}.device")
+        words = "the devices of a list are set each by its name: [[phase.device]] with name"
+        return [(f"{place}.device", words)]
+    if scene.place is None:
+        return [(f"{place}.device", "this scene has one device, no list [[device]]: write one table, [phase.device]")]
+    found, named = Faults(), {device.name: device for device in scene.devices}
+    told: set[str] = set()
+    for i, state in enumerate(phase.device):
+        where = f"{place}.device[{i}]"
+        if state.name not in named:
+            known = [str(name) for name in named]
+            found.append((f"{where}.name", f"no such device {shown(state.name)}. {nearest(state.name, known)}"))
+            continue
+        if state.name in told:
+            found.append((f"{where}.name", f"this phase says already how {shown(state.name)} stands"))
+        told.add(state.name)
+        found += _device(named[state.name], state, where)
+        if state.name == scene.device.name and state.steering is not None and phase.steering is not None:
+            words = "steers this device already: say it once"
+            found.append((f"{where}.steering", f"{place}.steering {words}"))
+    return found
+
+
+def _of_devices_beside(scene: Scene, phase: Phase, place: str) -> Faults:
+    """What is wrong with the steering that a phase gives to devices beside the first one."""
+    found: Faults = []
+    before = beside_conflicts(scene)
+    names = [state.name for state in phase.named]
+    for where, words in beside_conflicts(scene_of(scene, phase)):
+        head, _, rest = where.removeprefix("device[").partition("]")
+        name = scene.beside[int(head)].name
+        if (where, words) not in before and name in names:
+            found.append((f"{place}.device[{names.index(str(name))}]{rest}", words))
+    return found
+
+
+def _device(device: Devices, state: DeviceState, place: str) -> Faults:
+    """Whether a device can stand as a phase wants it."""
+    found = Faults()
     if isinstance(device, NoDevice) and (not state.on or state.throttle != 1.0):
-        found.append((f"{place}.device", "nothing pushes: the device is none"))
+        found.append((place, "nothing pushes: the device is none"))
     if state.voltage is None:
         return found
-    where = f"{place}.device.voltage"
+    where = f"{place}.voltage"
     if isinstance(device, ElectricSail):
         if device.voltage is None:
             words = "the sail gives its strength as an acceleration: set throttle, or give it tethers and a voltage"
@@ -147,16 +185,20 @@ def _device(scene: Scene, phase: Phase, place: str) -> Faults:
 
 def _steering(scene: Scene, phase: Phase, place: str) -> Faults:
     """What a steering asks that a phase does not give."""
-    if phase.steering is None:
-        return []
-    where, found = f"{place}.steering.kind", Faults()
+    found = _of_devices_beside(scene, phase, place) if phase.named else Faults()
+    steering = steering_of_first(scene, phase)
+    if steering is None:
+        return found
+    if steering is not phase.steering:
+        place = _of_first(scene, phase, place)
+    where = f"{place}.steering.kind"
     if device_of(scene).tether:
         words = "a tether lies as [steering] says in all phases; a phase switches it and sets its voltage"
         found.append((where, words))
-    if isinstance(phase.steering, SmoothedSteering):
+    if isinstance(steering, SmoothedSteering):
         words = "a smoothed transfer is solved from the start of the run to its end: it is no phase"
         found.append((where, words))
-    if steering_of(scene_of(scene, phase)).planar(phase.steering) and phase is not scene.phase[0]:
+    if steering_of(scene_of(scene, phase)).planar(steering) and phase is not scene.phase[0]:
         words = "three costates belong to a start without inclination: give six in a later phase"
         found.append((f"{place}.steering.costates", words))
     return found
@@ -170,17 +212,26 @@ def asked_of_each(scene: Scene, questions: Sequence[Question], later: Sequence[Q
         one = scene_of(scene, phase)
         for question in later if i else questions:
             for place, words in question(one):
-                fault = (_placed(phase, i, place), words)
+                fault = (_placed(scene, phase, i, place), words)
                 if fault not in found:
                     found.append(fault)
     return found
 
 
-def _placed(phase: Phase, i: int, place: str) -> str:
+def _of_first(scene: Scene, phase: Phase, place: str) -> str:
+    """Where a phase says how the device stands that [steering] steers."""
+    names = [state.name for state in phase.named]
+    return f"{place}.device[{names.index(scene.device.name)}]" if scene.device.name in names else place
+
+
+def _placed(scene: Scene, phase: Phase, i: int, place: str) -> str:
     """Where in the file a fault of a phase's own scene lies."""
-    first = place.split(".", 1)[0]
-    if first == "steering" and phase.steering is not None:
-        return f"phase[{i}].{place}"
-    own = phase.device.voltage is not None and place == "device.voltage"
+    first, named = place.split(".", 1)[0], _of_first(scene, phase, f"phase[{i}]")
+    steering, voltage = steering_of_first(scene, phase), phase.state_of(scene.device).voltage
+    if first == "steering" and steering is not None:
+        return f"phase[{i}].{place}" if steering is phase.steering else f"{named}.{place}"
+    if phase.named and place == "device.voltage" and voltage is not None:
+        return f"{named}.voltage"
+    own = voltage is not None and place == "device.voltage"
     own |= place.startswith("propagation.") and getattr(phase.propagation, place.split(".")[1], None) is not None
     return f"phase[{i}].{place}" if own else place

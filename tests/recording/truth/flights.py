@@ -329,6 +329,26 @@ def round_a_planet():
     )
 
 
+def several_in_phases():
+    """A sail and a thruster that take turns, each turned anew."""
+    ahead = {"kind": "thruster", "name": "engine", "acceleration_mm_s2": 0.3, "steering": {"kind": "tangential"}}
+    up = {"kind": "inertial", "direction": [0, 0, 1]}
+    return sailviz.simulate(
+        {
+            "title": "A sail and a thruster take turns",
+            "start": {"kind": "circular", "radius_au": 0.9},
+            "device": [ahead, {"kind": "solar-sail", "name": "sail", "characteristic_acceleration_mm_s2": 0.6}],
+            "steering": {"kind": "orbital", "pitch_deg": 35, "clock_deg": 270},
+            "propagation": {"duration_d": 240, "outputs": 121},
+            "phase": [
+                {"name": "spiral in", "until": {"duration_d": 80}, "device": [{"name": "engine", "on": False}]},
+                {"name": "crank", "until": "time_d = 170", "device": [{"name": "engine", "steering": up}]},
+                {"name": "watch the poles", "device": [{"name": "sail", "on": False}, {"name": "engine", "on": False}]},
+            ],
+        }
+    )
+
+
 def several_round_a_planet():
     """A sail and a thruster high over the Earth: two parts of a push in the frame of the light."""
     ahead = {"kind": "thruster", "acceleration_mm_s2": 0.4, "steering": {"kind": "tangential"}}
@@ -462,6 +482,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "own low gap": own_low_gap,
     "several devices": several_devices,
     "several round a planet": several_round_a_planet,
+    "several in phases": several_in_phases,
     "together sails": together_sails,
     "together dated": together_dated,
     "together low": together_low,

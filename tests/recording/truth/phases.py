@@ -72,6 +72,11 @@ def told(f, text):
         if value:
             size = {"day": DAY, "hour": 3600.0}[word]
             assert abs(float(value) * size - (start - f.truth.time[0])) <= 0.51 * size
-        assert ("off" in held) == (not phase["device"]["on"])
+        state = phase["device"]
+        each = (
+            [(f"{one['name']} off", one["on"]) for one in state] if isinstance(state, list) else [("off", state["on"])]
+        )
+        off = [word for word, on in each if not on]
+        assert sorted(part for part in held.split(", ") if part.endswith("off")) == sorted(off)
     never = [phase["name"] for phase in f.truth.resolved["phase"]][len(names(f)) :]
     assert all(f"**{' and '.join(never)}** never began" in text for _ in never)

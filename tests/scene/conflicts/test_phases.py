@@ -92,17 +92,6 @@ def test_an_end_that_no_phase_can_have_is_told_at_its_place(until, place, words)
             'Did you mean "end of a"?',
         ),
         (
-            {
-                "phase": [first(), LAST],
-                "device": [
-                    {"name": "film", "kind": "solar-sail", "lightness_number": 0.02, "mass_kg": 10},
-                    {"name": "jet", "kind": "thruster", "thrust_mN": 1, "steering": {"kind": "radial"}},
-                ],
-            },
-            "device[0]",
-            "one device",
-        ),
-        (
             {"phase": [first(), LAST], "approximation": [{"kind": "first-order"}]},
             "approximation[0]",
             "goes with no [[phase]]",

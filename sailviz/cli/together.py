@@ -52,6 +52,31 @@ def check_asked_for(files: Sequence[str], together: bool | None, given: Sequence
 
 
 @contextmanager
+def recorded(files: Sequence[str]) -> Iterator[list[str]]:
+    """The files, and in the place of each flight of others a recording of it that is gone afterwards."""
+    from sailviz.recording.flights import is_flight, read_flight
+
+    if not any(map(is_flight, files)):
+        yield list(files)
+        return
+    from sailviz.recording.views.scratch import scratch
+    from sailviz.recording.writer import record
+
+    with scratch() as folder:
+        shown: list[str] = []
+        for number, file in enumerate(files):
+            if is_flight(file):
+                place = folder / str(number)
+                place.mkdir()
+                made = place / f"{Path(file).stem or 'flight'}.rrd"
+                record(read_flight(file), made)
+                shown.append(str(made))
+            else:
+                shown.append(file)
+        yield shown
+
+
+@contextmanager
 def one_picture(files: Sequence[str], together: bool | None, given: Sequence[str]) -> Iterator[tuple[str | Path, ...]]:
     """What is to be shown of recordings: one of them all where that was asked for, or where nothing was and it can be;
     else they themselves, and why. RecordingError where it cannot be and was asked for."""

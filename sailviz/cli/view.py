@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from sailviz.cli.shared import collecting_failures, files_argument
-from sailviz.cli.together import check_asked_for, check_files, name_option, one_picture, together_option
+from sailviz.cli.together import check_asked_for, check_files, name_option, one_picture, recorded, together_option
 
 
 @click.command()
@@ -13,7 +13,7 @@ from sailviz.cli.together import check_asked_for, check_files, name_option, one_
 @together_option
 @name_option
 def view(files: tuple[str, ...], together: bool | None, names: tuple[str, ...]) -> None:
-    """Open recordings in the native viewer.
+    """Open recordings in the native viewer, or flights of others: .oem, .bsp, .csv, .parquet, .npz.
 
     Several flights of one family, about one body, are shown in one picture, each in its own colour and called after its
     file or by --name; --apart shows each by itself, as are those that cannot be put together.
@@ -21,8 +21,8 @@ def view(files: tuple[str, ...], together: bool | None, names: tuple[str, ...]) 
     from sailviz.recording.views.viewers import check_screen, open_viewer
 
     check_asked_for(files, together, names)
-    with collecting_failures() as failures, failures.next():
-        check_files(files)
+    with collecting_failures() as failures, failures.next(), recorded(files) as known:
+        check_files(known)
         check_screen()
-        with one_picture(files, together, names) as shown:
+        with one_picture(known, together, names) as shown:
             open_viewer(*shown)

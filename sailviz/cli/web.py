@@ -10,7 +10,7 @@ import click
 from sailviz.cli.numbers import PORT
 from sailviz.cli.outputs import folder_at
 from sailviz.cli.shared import collecting_failures, files_argument
-from sailviz.cli.together import check_asked_for, check_files, name_option, one_picture, together_option
+from sailviz.cli.together import check_asked_for, check_files, name_option, one_picture, recorded, together_option
 
 
 @click.command()
@@ -37,7 +37,9 @@ def web(
     port: int,
     data_port: int,
 ) -> None:
-    """Show recordings in a browser on this machine; works offline. Ctrl-C ends it.
+    """Show recordings, or flights of others as `view` does, in a browser on this machine. Ctrl-C ends it.
+
+    Works offline.
 
     Several flights of one family are shown in one picture, as `sailviz view` does; --apart shows each by itself.
     """
@@ -56,10 +58,10 @@ def web(
             webbrowser.open(url)
 
     check_asked_for(files, together, names)
-    with collecting_failures() as failures, failures.next():
+    with collecting_failures() as failures, failures.next(), recorded(files) as known:
         folder = None if exported is None else folder_at(exported, "pages")
-        check_files(files)
-        with one_picture(files, together, names) as shown:
+        check_files(known)
+        with one_picture(known, together, names) as shown:
             if folder is not None:
                 _export(shown, folder)
             else:

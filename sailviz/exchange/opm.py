@@ -54,6 +54,33 @@ class OrbitParameters(NamedTuple):
 
 def read_opm(path: str | Path) -> OrbitParameters:
     """Read an OPM. RecordingError, in one sentence with the line, for what is none, is malformed, or has manoeuvres."""
+    words, passed = _words(path)
+    needed(words, REQUIRED, path)
+    system = words["TIME_SYSTEM"].value.upper()
+    try:
+        instant = tai(words["EPOCH"].value, system)
+    except DateError as error:
+        raise RecordingError(f"{path}, line {words['EPOCH'].line}: {error}") from None
+    x, y, z, vx, vy, vz = (
+        1e3 * number(words[key], key, "km/s" if key.endswith("_DOT") else "km", path) for key in STATE
+    )
+    if not (x or y or z):
+        raise RecordingError(f"{path}: the craft stands in the centre of {words['CENTER_NAME'].value}")
+    mass, solar, solar_c, drag, drag_c = (
+        number(words[key], key, unit, path) if key in words else None for key, unit in CRAFT.items()
+    )
+    for key, value in (("MASS", mass), ("SOLAR_RAD_AREA", solar), ("DRAG_AREA", drag)):
+        if value is not None and value < 0.0:
+            raise RecordingError(f"{path}, line {words[key].line}: {key} is negative")
+    return OrbitParameters(
+        words["OBJECT_NAME"].value, words["OBJECT_ID"].value, words["CENTER_NAME"].value.upper(),
+        words["REF_FRAME"].value.upper(), system, words["EPOCH"].value, instant, (x, y, z), (vx, vy, vz),
+        mass, solar, solar_c, drag, drag_c, passed,
+    )  # fmt: skip
+
+
+def _words(path: str | Path) -> tuple[dict[str, Word], tuple[str, ...]]:
+    """The keywords that count, and sentences about those that do not."""
     words: dict[str, Word] = {}
     passed: dict[str, None] = {}
     for line, text in lines_of(path, "OPM"):
@@ -76,28 +103,7 @@ def read_opm(path: str | Path) -> OrbitParameters:
             words[key] = word
         else:
             raise RecordingError(f"{path}, line {line}: {key[:60]} is no keyword of an OPM")
-    needed(words, REQUIRED, path)
-    system = words["TIME_SYSTEM"].value.upper()
-    try:
-        instant = tai(words["EPOCH"].value, system)
-    except DateError as error:
-        raise RecordingError(f"{path}, line {words['EPOCH'].line}: {error}") from None
-    x, y, z, vx, vy, vz = (
-        1e3 * number(words[key], key, "km/s" if key.endswith("_DOT") else "km", path) for key in STATE
-    )
-    if not (x or y or z):
-        raise RecordingError(f"{path}: the craft stands in the centre of {words['CENTER_NAME'].value}")
-    mass, solar, solar_c, drag, drag_c = (
-        number(words[key], key, unit, path) if key in words else None for key, unit in CRAFT.items()
-    )
-    for key, value in (("MASS", mass), ("SOLAR_RAD_AREA", solar), ("DRAG_AREA", drag)):
-        if value is not None and value < 0.0:
-            raise RecordingError(f"{path}, line {words[key].line}: {key} is negative")
-    return OrbitParameters(
-        words["OBJECT_NAME"].value, words["OBJECT_ID"].value, words["CENTER_NAME"].value.upper(),
-        words["REF_FRAME"].value.upper(), system, words["EPOCH"].value, instant, (x, y, z), (vx, vy, vz),
-        mass, solar, solar_c, drag, drag_c, tuple(passed),
-    )  # fmt: skip
+    return words, tuple(passed)
 
 
 def write_opm(path: str | Path, state: OrbitParameters) -> Path:

@@ -27,9 +27,10 @@ def record(
     """Record a run, its blocks, or a scene, which is flown block by block, to one sink or to several; or several runs
     in one picture: `record(runs={"flat": run, "billowed": other}, sink="both.rrd")`.
 
-    source : a Run, consecutive blocks of one, or whatever `load_scene` takes: a Scene, a
-    path, the name of a shipped scene, a dictionary. sink : a path, VIEWER, WEB, Connect(url), Memory() or "-", as in
-    `sailviz.recording.record`, which this is for arrays. runs : name -> a Run, a scene, which is flown, or a Recording,
+    source : a Run, consecutive blocks of one, somebody's flight (the path of an .oem, .bsp, .csv, .parquet or .npz), or
+    whatever `load_scene` takes: a Scene, a path, the name of a shipped scene, a dictionary.
+    sink : a path, VIEWER, WEB, Connect(url), Memory() or "-", as in `sailviz.recording.record`.
+    runs : name -> a Run, a scene, which is flown, or a Recording,
     instead of a source; all of one family and about one body. Then whatever stands by its place is a sink.
     Raises RecordingError where a sink cannot be written, before anything is flown, and for runs that cannot be put
     together; SceneError for a faulty scene; PropagationError where the integration breaks down, with the rows so far
@@ -41,6 +42,10 @@ def record(
         raise TypeError("record needs a run or a scene, and somewhere to put it: record(run, 'orbit.rrd')")
     if isinstance(source, Run | Iterator | list | tuple):
         return writer.record(source, sink, *more_sinks)
+    from sailviz.recording.flights import is_flight, read_flight
+
+    if is_flight(source):
+        return writer.record(read_flight(cast("str", source)), sink, *more_sinks)
     from sailviz.scene.loading import load_scene  # arrays are recorded without compiled code and without scenes
     from sailviz.simulation.loop import simulate_blocks
 

@@ -86,9 +86,22 @@ def evidence(source: Source | Evidence, label: str = "") -> Evidence:
         return of_recording(source, label or str(source.path))
     if not isinstance(source, str | os.PathLike):
         raise RecordingError(f"cannot compare {source!r}: give a recording, a Run, or the path of an .rrd or .npz file")
-    if Path(source).suffix == ".npz":
+    if Path(source).suffix == ".npz" and not _of_others(Path(source)):
         return of_npz(Path(source), label or str(source))
+    from sailviz.recording.flights import is_flight, read_flight
+
+    if is_flight(source):
+        return of_run(read_flight(Path(source)), label or str(source))
     return of_recording(read(source), label or str(source))
+
+
+def _of_others(path: Path) -> bool:
+    """Whether an archive is not one of `export`, as far as its names tell; False for what is no archive."""
+    try:
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as stored:
+            return "state.time_s" not in stored.files and any("position" in name for name in stored.files)
+    except Exception:  # said where it is read
+        return False
 
 
 def of_run(run: Run, label: str) -> Evidence:

@@ -270,7 +270,7 @@ def air_drag(x, y, z, vx, vy, vz, rotation, k):
 def exponential_air_drag(x, y, z, vx, vy, vz, m, r, rotation, p):
     """Drag of an exponential atmosphere, m/s2. p : Parameters."""
     density = exponential(r, p.reference_radius, p.density, p.scale_height)
-    return air_drag(x, y, z, vx, vy, vz, rotation, density * p.drag_area / m)
+    return air_drag(x, y, z, vx, vy, vz, rotation, density * (p.drag_area / m))
 
 
 @entry("d1 d2 D1")

@@ -41,7 +41,7 @@ class Parameters(NamedTuple):
 @inlined
 def exponential(altitude, reference_altitude, value, scale_height):
     """value exp(-(h - h0) / H); all lengths in m."""
-    return value * np.exp((reference_altitude - altitude) / scale_height)
+    return value * np.exp((reference_altitude - altitude) * (1.0 / scale_height))
 
 
 @cache

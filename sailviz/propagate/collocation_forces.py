@@ -40,11 +40,13 @@ def fits_lanes(p):
         return True
     if device != SOLAR_SAIL and device != ELECTRIC_SAIL:
         return False
-    return is_table(steering) or (
+    return (
         steering == attitude.RADIAL
         or steering == attitude.ORBITAL
         or steering == attitude.MERIDIAN
         or steering == attitude.TRANSVERSE
+        or steering == attitude.TABLE_ORBITAL
+        or steering == attitude.TABLE_MERIDIAN
     )
 
 
@@ -85,13 +87,13 @@ def prepare(nodes, t, h, factor, p):
 
 
 @inlined
-def forces_at_once(nodes, x, y, z, vx, vy, vz, mass, factor, p):
-    """Accelerations at the nodes, of the forces that `fits_lanes` allows."""
-    inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
+def forces_at_once(nodes, x, y, z, r, inverse, vx, vy, vz, mass, factor, p):
+    """Accelerations at the nodes, of the forces that `fits_lanes` allows, besides the attraction by a point. r, inverse
+    : the distance from the centre and its inverse."""
     g = p.gravity
-    ax, ay, az = gravity(x, y, z, inverse, g.mu, g.j2_strength, g.j3_strength, g.j4_strength)
+    ax, ay, az = gravity(x, y, z, inverse, 0.0, g.j2_strength, g.j3_strength, g.j4_strength)
     if p.air.kind == atmosphere.EXPONENTIAL:
-        bx, by, bz = exponential_air_drag(x, y, z, vx, vy, vz, mass, 1.0 / inverse, p.surface.rotation, p.air)
+        bx, by, bz = exponential_air_drag(x, y, z, vx, vy, vz, mass, r, p.surface.rotation, p.air)
         ax, ay, az = ax + bx, ay + by, az + bz
     if p.kinds.device == NO_DEVICE or factor == 0.0:
         return ax, ay, az

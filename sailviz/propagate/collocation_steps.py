@@ -21,46 +21,46 @@ from sailviz.propagate.collocation_memory import (
     CLOSEST,
     DENSE,
     FORCE,
+    FOUND,
     HALF,
     HELD,
     MASS,
     MIDDLE,
     NODE,
+    PAST,
     PLACE,
     POWERS,
     REST,
-    across_1,
-    across_2,
-    across_4,
     end_position,
-    end_position_left,
     end_velocity,
-    end_velocity_left,
-    highest,
+    following,
     lane,
     load,
     monomials,
+    monomials_of_three,
     node,
-    node_left,
     once,
     once_left,
-    position_sum,
-    position_sum_left,
+    position_sums,
+    position_sums_left,
     product_left,
-    second,
     smallest,
     spread,
     store,
     total,
     twice,
     twice_left,
-    velocity_sum,
+    velocity_sums,
 )
+from sailviz.propagate.collocation_rounding import exact_end, rounded_away
 from sailviz.propagate.dynamics import SIZE
 from sailviz.propagate.stepping import NEW, Y
 
 MOST_SWEEPS = 25
+SEVENTH, SIXTH = 16 / 429, 16 / 231  # what P_7 and P_6 have of s^7 and s^6, inverse
 ROUNDING = 1e-28  # of accelerations, squared, over themselves: no sweep makes it smaller
+NOISE = 1e-15  # of a coefficient over the whole, by rounding
+EQUAL = 1e-9  # of a step: the lengths of steps that differ by less are one
 CORRECTIONS = 1  # to first order, after each evaluation of the forces
 
 
@@ -76,7 +76,10 @@ def continued(nodes, s, component):
 
 @inlined
 def first_guess(nodes, t, h, y, mu):
-    """Accelerations at the nodes of [t, t + h]: those of the last step, continued, or at first of a circle."""
+    """Accelerations at the nodes of [t, t + h]: those of the last two steps, if they are as long, or of the last one,
+    continued; at first those of a circle."""
+    if nodes[HELD] == 2.0 and abs(h - 2.0 * nodes[HALF]) < EQUAL * h and t > nodes[MIDDLE]:
+        return following(nodes, PAST)
     if nodes[HELD] != 0.0:
         s = (t - nodes[MIDDLE] + h * node()) / nodes[HALF]
         return continued(nodes, s, 0), continued(nodes, s, 1), continued(nodes, s, 2)
@@ -110,46 +113,10 @@ def corrected(nodes, x, y, z, rx, ry, rz, h2, mu):
         store(nodes, CHANGE, cx)
         store(nodes, CHANGE + 8, cy)
         store(nodes, CHANGE + 16, cz)
-        dx, dy, dz = position_sum(nodes, CHANGE), position_sum(nodes, CHANGE + 8), position_sum(nodes, CHANGE + 16)
+        dx, dy, dz = position_sums(nodes, CHANGE)
         jx, jy, jz = steeper(x, y, z, h2 * dx, h2 * dy, h2 * dz, mu)
         cx, cy, cz = rx + jx, ry + jy, rz + jz
     return cx, cy, cz
-
-
-@inlined
-def two_sum(a, b):
-    """The sum and what rounding takes from it."""
-    s = a + b
-    d = s - a
-    return s, (a - (s - d)) + (b - d)
-
-
-@inlined
-def rounded_away(nodes, work, h, component, x):
-    """What the positions x at the nodes lack by the rounding of tables, products and sums."""
-    place, speed = work[Y, component], work[Y, 3 + component]
-    f = FORCE + 8 * component
-    bend, hc, h2 = position_sum(nodes, f), h * node(), h * h
-    straight, bent = hc * speed, h2 * bend
-    first, e1 = two_sum(spread(place), straight)
-    second, e2 = two_sum(first, bent)
-    lost = product_left(hc, speed, straight) + product_left(node(), h, hc) * speed + product_left(bend, h2, bent)
-    tables_lost = h * (node_left() * speed + h * position_sum_left(nodes, f))
-    before = nodes[REST + component] + hc * nodes[REST + 3 + component]
-    return ((second - x) + (e1 + e2 + lost)) + (tables_lost + before)
-
-
-@inlined
-def exact_total(table, table_left, f, f_left):
-    """The sum of table f to twice the precision: (sum, what it lacks); what the factors lack is given."""
-    p = table * f
-    left = product_left(table, f, p) + (table_left * f + table * f_left)
-    p, e = two_sum(p, across_4(p))  # every sum stands in two places, then in four, in eight: so does what it lacks
-    left = left + 0.5 * e
-    p, e = two_sum(p, across_2(p))
-    left = left + 0.25 * e
-    p, e = two_sum(p, across_1(p))
-    return lane(p), total(left + 0.125 * e)
 
 
 @inlined
@@ -159,24 +126,29 @@ def sweep(nodes, work, t, h, enough, at_once, burns, careful, factor, p):
     y = work[Y]
     x0, y0, z0, u0, v0, w0 = y[0], y[1], y[2], y[3], y[4], y[5]
     fx, fy, fz = first_guess(nodes, t, h, y, p.gravity.mu)
-    if burns and nodes[HELD] == 0.0:
-        store(nodes, FORCE + 24, spread(0.0))
+    if burns:  # as in the last step, not as in one that came to nothing, which may be no number
+        store(nodes, FORCE + 24, load(nodes, BEFORE + 24))
     before, sweeps = 0.0, 0
     h2, hc = h * h, h * node()
     while True:
         store(nodes, FORCE, fx)
         store(nodes, FORCE + 8, fy)
         store(nodes, FORCE + 16, fz)
-        x = x0 + (hc * u0 + h2 * position_sum(nodes, FORCE))
-        yy = y0 + (hc * v0 + h2 * position_sum(nodes, FORCE + 8))
-        z = z0 + (hc * w0 + h2 * position_sum(nodes, FORCE + 16))
-        vx = u0 + h * velocity_sum(nodes, FORCE)
-        vy = v0 + h * velocity_sum(nodes, FORCE + 8)
-        vz = w0 + h * velocity_sum(nodes, FORCE + 16)
+        sx, sy, sz = position_sums(nodes, FORCE)
+        x, yy, z = x0 + (hc * u0 + h2 * sx), y0 + (hc * v0 + h2 * sy), z0 + (hc * w0 + h2 * sz)
+        vx, vy, vz = velocity_sums(nodes, FORCE)
+        vx, vy, vz = u0 + h * vx, v0 + h * vy, w0 + h * vz
         if at_once:
-            gx, gy, gz = forces_at_once(nodes, x, yy, z, vx, vy, vz, y[6], factor, p)
+            r2 = x * x + yy * yy + z * z
+            inverse = 1.0 / np.sqrt(r2)
+            qx, qy, qz = forces_at_once(nodes, x, yy, z, r2 * inverse, inverse, vx, vy, vz, y[6], factor, p)
+            pull = -p.gravity.mu * (inverse * inverse) * inverse
+            px, py, pz = pull * x, pull * yy, pull * z
+            gx, gy, gz = px + qx, py + qy, pz + qz
         else:
             gx, gy, gz = forces_one_by_one(nodes, work, t, h, x, yy, z, vx, vy, vz, factor, p, burns)
+            px, py, pz, pull = gx, gy, gz, spread(0.0)
+            qx, qy, qz = pull, pull, pull
         cx, cy, cz = corrected(nodes, x, yy, z, gx - fx, gy - fy, gz - fz, h2, p.gravity.mu)
         change = total((gx - fx) * (gx - fx) + (gy - fy) * (gy - fy) + (gz - fz) * (gz - fz))
         if burns:  # the mass rate counts as the accelerations do: its share of the mass like theirs of the distance
@@ -199,28 +171,37 @@ def sweep(nodes, work, t, h, enough, at_once, burns, careful, factor, p):
             return False, sweeps
         before = change
     if careful:
-        lx, ly, lz = (
-            rounded_away(nodes, work, h, 0, x),
-            rounded_away(nodes, work, h, 1, yy),
-            rounded_away(nodes, work, h, 2, z),
-        )
-        store(nodes, CHANGE, fx - load(nodes, FORCE))
-        store(nodes, CHANGE + 8, fy - load(nodes, FORCE + 8))
-        store(nodes, CHANGE + 16, fz - load(nodes, FORCE + 16))
-        dx = h2 * position_sum(nodes, CHANGE) + lx
-        dy = h2 * position_sum(nodes, CHANGE + 8) + ly
-        dz = h2 * position_sum(nodes, CHANGE + 16) + lz
-        jx, jy, jz = steeper(x, yy, z, dx, dy, dz, p.gravity.mu)
-        store(nodes, CHANGE, jx)
-        store(nodes, CHANGE + 8, jy)
-        store(nodes, CHANGE + 16, jz)
-        store(nodes, PLACE, gx)
-        store(nodes, PLACE + 8, gy)
-        store(nodes, PLACE + 16, gz)
+        lx, ly, lz = position_sums_left(nodes, FORCE)
+        lx = rounded_away(nodes, work, h, 0, x, sx, lx)
+        ly = rounded_away(nodes, work, h, 1, yy, sy, ly)
+        lz = rounded_away(nodes, work, h, 2, z, sz, lz)
+        jx, jy, jz = steeper(x, yy, z, lx, ly, lz, p.gravity.mu)
+        store(nodes, CHANGE, cx + jx)
+        store(nodes, CHANGE + 8, cy + jy)
+        store(nodes, CHANGE + 16, cz + jz)
+        dx, dy, dz = position_sums(nodes, CHANGE)
+        jx, jy, jz = steeper(x, yy, z, h2 * dx + lx, h2 * dy + ly, h2 * dz + lz, p.gravity.mu)
+        if at_once:
+            qx, qy = product_left(pull, x, px) + (qx + jx), product_left(pull, yy, py) + (qy + jy)
+            qz = product_left(pull, z, pz) + (qz + jz)
+        else:
+            qx, qy, qz = jx, jy, jz
+        store(nodes, CHANGE, qx)
+        store(nodes, CHANGE + 8, qy)
+        store(nodes, CHANGE + 16, qz)
+        store(nodes, PLACE, px)
+        store(nodes, PLACE + 8, py)
+        store(nodes, PLACE + 16, pz)
         fx, fy, fz = gx + jx, gy + jy, gz + jz
     store(nodes, FORCE, fx)
     store(nodes, FORCE + 8, fy)
     store(nodes, FORCE + 16, fz)
+    ax, ay, az = monomials_of_three(nodes, FORCE)
+    store(nodes, FOUND, ax)
+    store(nodes, FOUND + 8, ay)
+    store(nodes, FOUND + 16, az)
+    if burns:
+        store(nodes, FOUND + 24, monomials(nodes, FORCE + 24))
     nodes[CLOSEST] = np.sqrt(smallest(x * x + yy * yy + z * z))
     return True, sweeps
 
@@ -232,13 +213,12 @@ def missing(nodes, h, r, mass, burns):
     itself counts like a position that strays by this share of the distance r."""
     a7 = a6 = 0.0
     for c in range(3):
-        f = load(nodes, FORCE + 8 * c)
-        last, one_before = total(highest() * f), total(second() * f)
+        last, one_before = nodes[FOUND + 8 * c + 7] * SEVENTH, nodes[FOUND + 8 * c + 6] * SIXTH
         a7, a6 = a7 + last * last, a6 + one_before * one_before
     strays = 0.0 if a7 == 0.0 else a7 / np.sqrt(max(a6, a7)) * h * h / 1020.0  # 15 17 4
     if burns:
-        f = load(nodes, FORCE + 24)
-        last, one_before = abs(total(highest() * f)), abs(total(second() * f))
+        last, one_before = abs(nodes[FOUND + 31] * SEVENTH), abs(nodes[FOUND + 30] * SIXTH)
+        last -= NOISE * abs(nodes[FOUND + 24])  # which counts much where little of the mass is left
         if last > 0.0:
             strays += last / max(one_before, last) * last * h / 34.0 * (r / mass)  # 17 2
     return strays
@@ -250,8 +230,10 @@ def keep_polynomial(nodes, work, t, h, burns):
     half = 0.5 * h
     y = work[Y]
     for c in range(3):
-        a = monomials(nodes, FORCE + 8 * c)
+        a = load(nodes, FOUND + 8 * c)
         store(nodes, BEFORE + 8 * c, a)
+        store(nodes, PAST + 16 * c, load(nodes, PAST + 16 * c + 8))
+        store(nodes, PAST + 16 * c + 8, load(nodes, FORCE + 8 * c))
         place, speed = DENSE + POWERS * c, DENSE + POWERS * (3 + c)
         store(nodes, speed + 1, half * (a * once()))
         store(nodes, place + 2, half * half * (a * twice()))
@@ -261,10 +243,12 @@ def keep_polynomial(nodes, work, t, h, burns):
     mass = DENSE + POWERS * 6
     nodes[mass] = y[6]
     if burns:
-        a = monomials(nodes, FORCE + 24)
+        a = load(nodes, FOUND + 24)
+        store(nodes, BEFORE + 24, load(nodes, FORCE + 24))
         store(nodes, mass + 1, half * (a * once()))
         nodes[mass] = y[6] + half * total(a * once_left())
-    nodes[MIDDLE], nodes[HALF], nodes[HELD] = t + half, half, 1.0
+    nodes[HELD] = 2.0 if nodes[HELD] != 0.0 and abs(half - nodes[HALF]) < EQUAL * half else 1.0
+    nodes[MIDDLE], nodes[HALF] = t + half, half
 
 
 @inlined
@@ -284,24 +268,15 @@ def keep_end(nodes, work, h, burns, careful, fits):
         for c in range(6):
             nodes[REST + c] = 0.0
         return
-    for c in range(3):
-        rest, more_rest = nodes[REST + c], nodes[REST + 3 + c]
-        if careful:
-            f, f_left = load(nodes, PLACE + 8 * c), load(nodes, CHANGE + 8 * c)
-            bend, bend_left = exact_total(end_position(), end_position_left(), f, f_left)
-            push, push_left = exact_total(end_velocity(), end_velocity_left(), f, f_left)
-            h2 = h * h
-            straight, bent, pushed = h * y[3 + c], h2 * bend, h * push
-            # h is a number without rounding, its square is not
-            left = product_left(h, y[3 + c], straight) + product_left(h2, bend, bent) + product_left(h, h, h2) * bend
-            left += h2 * bend_left + (rest + h * more_rest)
-            place, e1 = two_sum(y[c], straight)
-            place, e2 = two_sum(place, bent)
-            new[c], nodes[REST + c] = two_sum(place, left + (e1 + e2))
-            speed, e1 = two_sum(y[3 + c], pushed)
-            left = product_left(h, push, pushed) + h * push_left + more_rest
-            new[3 + c], nodes[REST + 3 + c] = two_sum(speed, left + e1)
-        else:
+    if careful:
+        end, left = exact_end(nodes, h, y)
+        store(nodes, REST, left)
+        store(nodes, PLACE, end)
+        for c in range(6):
+            new[c] = nodes[PLACE + c]
+    else:
+        for c in range(3):
+            rest, more_rest = nodes[REST + c], nodes[REST + 3 + c]
             f = load(nodes, FORCE + 8 * c)
             step = h * (y[3 + c] + h * total(end_position() * f)) + (rest + h * more_rest)
             new[c] = y[c] + step
@@ -316,27 +291,35 @@ def keep_end(nodes, work, h, burns, careful, fits):
 
 @inlined
 def fill_rows(nodes, t_out, out, first, last):
-    """Rows first..last of out (components, n) at the times t_out (n,) from the polynomial of the last step, sixteen at
-    once as far as there is room for them: what is filled beyond the step is overwritten by the next."""
+    """Rows first..last of out (components, n) at the times t_out (n,) from the polynomial of the last step, sixteen or
+    eight at once as far as there is room for them: what is filled beyond the step is overwritten by the next."""
     middle, inverse = nodes[MIDDLE], 1.0 / nodes[HALF]
-    i = first
-    while i < last:
-        several = i + 16 <= len(t_out)
-        a = ((load(t_out, i) if several else spread(t_out[i])) - middle) * inverse
-        b = ((load(t_out, i + 8) if several else spread(t_out[i])) - middle) * inverse
+    i, n = first, len(t_out)
+    while last - i > 8 and i + 16 <= n:
+        a, b = (load(t_out, i) - middle) * inverse, (load(t_out, i + 8) - middle) * inverse
         for j in range(out.shape[0]):
             m = DENSE + POWERS * j + POWERS - 1
             p, q = nodes[m - 1] + a * nodes[m], nodes[m - 1] + b * nodes[m]
             for k in range(2, POWERS):
                 c = nodes[m - k]
                 p, q = c + a * p, c + b * q
+            row = out[j]
+            store(row, i, p)
+            store(row, i + 8, q)
+        i += 16
+    while i < last:
+        several = i + 8 <= n
+        a = ((load(t_out, i) if several else spread(t_out[i])) - middle) * inverse
+        for j in range(out.shape[0]):
+            m = DENSE + POWERS * j + POWERS - 1
+            p = nodes[m - 1] + a * nodes[m]
+            for k in range(2, POWERS):
+                p = nodes[m - k] + a * p
             if several:
-                row = out[j]
-                store(row, i, p)
-                store(row, i + 8, q)
+                store(out[j], i, p)
             else:
                 out[j, i] = lane(p)
-        i += 16 if several else 1
+        i += 8 if several else 1
 
 
 @inlined

@@ -15,6 +15,7 @@ import numpy as np
 
 NODES = 8
 DIGITS = 50
+FITTED = 13  # degree of the polynomial that continues two steps
 
 Polynomial = list[Decimal]  # coefficients, the constant first
 
@@ -28,7 +29,7 @@ class Tables(NamedTuple):
     end_velocity: np.ndarray  # (8,) the same at the end of the step
     end_position: np.ndarray  # (8,)
     monomial: np.ndarray  # (8, 8) coefficients in s of the polynomial through a: monomial @ a
-    highest: np.ndarray  # (2, 8) the coefficients of a's Legendre polynomials of degree 6 and 7: highest @ a
+    following: np.ndarray  # (8, 16) a of the next step from those of the last two, the older first, all as long
     # what the doubles above lack
     node_left: np.ndarray
     position_left: np.ndarray
@@ -46,7 +47,6 @@ def tables() -> Tables:
         basis = [_through(nodes, j) for j in range(NODES)]
         once = [_integral(p) for p in basis]
         twice = [_integral(p) for p in once]
-        top = [_legendre(NODES - 2), _legendre(NODES - 1)]
         node = [(s + 1) / 2 for s in nodes]
         position = [[_value(p, s) / 4 for p in twice] for s in nodes]
         end_velocity, end_position = [_value(p, one) / 2 for p in once], [_value(p, one) / 4 for p in twice]
@@ -57,13 +57,7 @@ def tables() -> Tables:
             end_velocity=_rounded(end_velocity),
             end_position=_rounded(end_position),
             monomial=_rounded([[p[k] for p in basis] for k in range(NODES)]),
-            # a rule of eight nodes integrates products of two such polynomials exactly
-            highest=_rounded(
-                [
-                    [(2 * len(p) - 1) * _value(p, s) * _value(b, one) / 2 for s, b in zip(nodes, once, strict=True)]
-                    for p in top
-                ]
-            ),
+            following=_rounded(_following(node)),
             node_left=_left(node),
             position_left=np.array([_left(row) for row in position]),
             end_velocity_left=_left(end_velocity),
@@ -100,6 +94,29 @@ def _legendre(degree: int) -> Polynomial:
             following[i] -= (k - 1) * c / k
         before, p = p, following
     return p
+
+
+def _following(node: list[Decimal]) -> list[list[Decimal]]:
+    """Values at 2 + node of the polynomial of degree FITTED that is closest to values at node and 1 + node.
+
+    Through all sixteen it would make rounding 6e10 times larger."""
+    old, new = [*node, *(x + 1 for x in node)], [x + 2 for x in node]
+    rows = [[Decimal(0)] * len(old) for _ in new]
+    # polynomials that are orthogonal over the old nodes, by their recurrence of three terms
+    before, here, size_before = [Decimal(0)] * len(old), [Decimal(1)] * len(old), Decimal(1)
+    ahead_before, ahead = [Decimal(0)] * len(new), [Decimal(1)] * len(new)
+    for _ in range(FITTED + 1):
+        size = sum((p * p for p in here), Decimal(0))
+        for row, value in zip(rows, ahead, strict=True):
+            for j, p in enumerate(here):
+                row[j] += value * p / size
+        centre = sum((x * p * p for x, p in zip(old, here, strict=True)), Decimal(0)) / size
+        ratio = size / size_before
+        before, here = here, [(x - centre) * p - ratio * q for x, p, q in zip(old, here, before, strict=True)]
+        further = [(x - centre) * p - ratio * q for x, p, q in zip(new, ahead, ahead_before, strict=True)]
+        ahead_before, ahead = ahead, further
+        size_before = size
+    return rows
 
 
 def _product(p: Polynomial, q: Polynomial) -> Polynomial:

@@ -124,9 +124,14 @@ def _exp(builder, x):
     n = builder.fsub(shifted, shift)
     r = sum_of(x, product_of(n, number(-0.693147180369123816490)))  # ln 2 in two parts, the first with 32 bits
     r = sum_of(r, product_of(n, number(-1.90821492927058770002e-10)))
-    value = number(1 / math.factorial(13))
-    for k in range(12, -1, -1):
-        value = sum_of(product_of(value, r), number(1 / math.factorial(k)))
+    # neighbours first, then their sums: four products one after the other in place of thirteen
+    terms: list[Any] = [number(1 / math.factorial(k)) for k in range(14)]
+    power = r
+    while len(terms) > 1:
+        pairs = zip(terms[::2], terms[1::2], strict=False)
+        terms = [sum_of(a, product_of(b, power)) for a, b in pairs] + terms[len(terms) // 2 * 2 :]
+        power = product_of(power, power)
+    value = terms[0]
     exponent = builder.shl(builder.bitcast(shifted, WORDS), ir.Constant(WORDS, [52] * COUNT))
     return builder.bitcast(builder.add(builder.bitcast(value, WORDS), exponent), VECTOR)
 
@@ -185,6 +190,23 @@ def first(typing, a):
     return types.float64(lanes), generate
 
 
+@intrinsic
+def aligned_stack(typing):
+    """Let the function keep what has no room in registers at multiples of 64 bytes: else LLVM may place eight numbers
+    across two pages of memory, where each time that they are written or read costs tens of cycles. To be called once in
+    a function that computes with lanes."""
+
+    def generate(context, builder, sig, arguments):
+        with builder.goto_entry_block():
+            place = builder.alloca(VECTOR)
+            place.align = 64
+        # an instruction that is none, but could read the place: so it stays
+        builder.asm(ir.FunctionType(ir.VoidType(), [place.type]), "", "r", [place], True)
+        return context.get_dummy_value()
+
+    return types.void(), generate
+
+
 def constant(values: Callable[[], np.ndarray]) -> Any:
     """An inlined function () -> eight numbers (8,), asked for when something is compiled."""
 
@@ -212,17 +234,17 @@ def product_left(typing, a, b, product):
     return kind(a, b, product), generate
 
 
-def swapped(distance: int) -> Any:
-    """An inlined function: lanes -> lanes, i and i xor distance exchanged."""
+def taken(*places: int) -> Any:
+    """An inlined function (a, b) -> eight of the sixteen numbers of both: those of a are 0 to 7, those of b 8 to 15."""
 
     @intrinsic
-    def swap(typing, a):
+    def take(typing, a, b):
         def generate(context, builder, sig, arguments):
-            return _shuffled(builder, arguments[0], arguments[0], [i ^ distance for i in range(COUNT)])
+            return _shuffled(builder, *arguments, places)
 
-        return lanes(lanes), generate
+        return lanes(lanes, lanes), generate
 
-    return swap
+    return take
 
 
 def _folded(fold: Callable[..., Any]) -> Any:
@@ -269,3 +291,25 @@ def product_with(table: Callable[[], np.ndarray], chains: int = 2) -> Any:
         return lanes(array, types.int64), generate
 
     return product
+
+
+def products_with(table: Callable[[], np.ndarray]) -> Any:
+    """An inlined function (array, first): the same for three rows of n numbers, one after the other, at once."""
+
+    @intrinsic
+    def products(typing, array, start):
+        def generate(context, builder, sig, arguments):
+            data = context.make_array(sig.args[0])(context, builder, arguments[0]).data
+            columns = np.asarray(table(), float).T.tolist()
+            sums: list[Any] = [None] * 3
+            for j, column in enumerate(columns):
+                for i in range(3):
+                    offset = builder.add(arguments[1], ir.Constant(WORD, j + i * len(columns)))
+                    value = _spread(builder, builder.load(builder.gep(data, [offset], source_etype=REAL), typ=REAL))
+                    term = builder.fmul(ir.Constant(VECTOR, column), value, flags=FREE)
+                    sums[i] = term if sums[i] is None else builder.fadd(sums[i], term, flags=FREE)
+            return context.make_tuple(builder, sig.return_type, sums)
+
+        return types.UniTuple(lanes, 3)(array, types.int64), generate
+
+    return products

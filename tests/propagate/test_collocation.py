@@ -17,7 +17,7 @@ from sailviz.propagate.collocation_forces import fits_lanes, forces_at_once, pre
 from sailviz.propagate.collocation_memory import LENGTH, load, node, store
 from sailviz.propagate.dynamics import derivative
 from sailviz.propagate.events import APSIS, NODE, RADIUS, RECORD, watch
-from sailviz.propagate.gauss_legendre import NODES, tables
+from sailviz.propagate.gauss_legendre import FITTED, NODES, tables
 from sailviz.propagate.parameters import PARAMETERS
 from sailviz.propulsion.electric_sail import MODELS
 from sailviz.steering import attitude
@@ -237,10 +237,15 @@ def _both_ways(states, out, factor, parameters):
     prepare(nodes, 3.0, 2.0, factor, p)
     place = load(states[0], 0), load(states[1], 0), load(states[2], 0)
     speed = load(states[3], 0), load(states[4], 0), load(states[5], 0)
-    ax, ay, az = forces_at_once(nodes, place[0], place[1], place[2], speed[0], speed[1], speed[2], 1.0, factor, p)
-    store(out[0], 0, ax)
-    store(out[1], 0, ay)
-    store(out[2], 0, az)
+    r2 = place[0] * place[0] + place[1] * place[1] + place[2] * place[2]
+    inverse = 1.0 / np.sqrt(r2)
+    ax, ay, az = forces_at_once(
+        nodes, place[0], place[1], place[2], r2 * inverse, inverse, speed[0], speed[1], speed[2], 1.0, factor, p
+    )
+    pull = -p.gravity.mu * inverse * inverse * inverse
+    store(out[0], 0, pull * place[0] + ax)
+    store(out[1], 0, pull * place[1] + ay)
+    store(out[2], 0, pull * place[2] + az)
     for i in range(8):
         for j in range(7):
             y[j] = states[j, i]
@@ -322,8 +327,11 @@ def test_the_tables_integrate_polynomials_exactly():
         assert t.end_velocity @ a == pytest.approx(1 / (power + 1), rel=1e-14)
         assert t.end_position @ a == pytest.approx(1 / (power + 1) / (power + 2), rel=1e-14)
         assert t.monomial @ (2 * t.node - 1) ** power == pytest.approx(np.eye(NODES)[power], abs=1e-12)
-    legendre = np.polynomial.legendre.Legendre([0, 0, 0, 0, 0, 0, 3.0, -2.0])
-    assert t.highest @ legendre(2 * t.node - 1) == pytest.approx([3.0, -2.0], rel=1e-13)
+    old = np.concatenate([t.node, 1 + t.node])
+    for power in range(FITTED + 1):
+        new = (t.node + 0.5) ** power  # of 2 + node, less 1.5
+        assert t.following @ (old - 1.5) ** power == pytest.approx(new, rel=1e-7, abs=1e-7)
+    assert np.abs(t.following).sum(axis=1).max() < 1e8  # by which it multiplies rounding
     assert np.sum(t.end_velocity) == pytest.approx(1.0, rel=1e-15)
     # the weights add up to 1 exactly, and these to 1/2, with what their doubles lack
     for table, left, whole in (

@@ -4,6 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from sailviz.scene.shape import Shapes
 from sailviz.scene.steering import Steering
 from sailviz.scene.values import (
     POSITIVE,
@@ -114,7 +115,8 @@ class ElectrochromicControl(Section):
 
 
 class SolarSail(Device):
-    """A flat solar sail. Its strength: characteristic acceleration, lightness number, or area with mass."""
+    """A solar sail. Its strength: characteristic acceleration, lightness number, or area with mass, of a flat one; or
+    its shape with mass, the film's back and its roll about the normal beside."""
 
     kind: Literal["solar-sail"]
     film: Literal["ideal", "eta-perfect", "jpl-1978", "jpl-2015"] | FilmCoefficients | FilmOptics = "ideal"
@@ -122,10 +124,17 @@ class SolarSail(Device):
     lightness_number: Annotated[float, POSITIVE] | None = None
     area: Annotated[Area, POSITIVE] | None = None
     control: ElectrochromicControl | None = None
+    shape: Shapes | None = None
+    back: Literal["same", "black"] | FilmCoefficients | FilmOptics | None = None
+    roll: Angle | None = None
 
     @model_validator(mode="after")
     def _strength(self) -> Self:
-        one_of(self, "characteristic_acceleration", "lightness_number", "area+mass")
+        one_of(self, "characteristic_acceleration", "lightness_number", "area+mass", "shape+mass")
+        if self.shape is None and (self.back is not None or self.roll is not None):
+            raise wrong(f"{'roll' if self.back is None else 'back'} belongs to a sail with a shape")
+        if self.shape is not None and self.back is None:
+            raise wrong('a sail with a shape needs its back: "same", "black", b1, b2, b3 or optics of its own')
         return self
 
     @property

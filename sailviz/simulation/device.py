@@ -23,7 +23,7 @@ from sailviz.run.arrays import Body, Craft
 from sailviz.run.devices import LABELS
 from sailviz.scene.device import Device as DeviceSection
 from sailviz.scene.device import ElectricSail, NoDevice, PlasmaBrake, SolarSail, Thruster
-from sailviz.scene.sky import light_mu
+from sailviz.scene.sky import has_sky, light_mu
 from sailviz.scene.values import Section
 from sailviz.simulation.bodies import epoch_of
 from sailviz.simulation.lowered import Array, Columns, LoweredDevice, Words, no_columns, no_words
@@ -111,13 +111,25 @@ def _film_strength(device: SolarSail, scene: Scene, design: Any) -> float:
         mu = light_mu(scene)
         assert mu is not None  # or the scene would not have been accepted
         return film.characteristic_acceleration(lightness=device.lightness_number) * (mu / MU_SUN)
+    if device.shape is not None:
+        from sailviz.simulation.sail_shape import sail_shape
+
+        assert device.mass is not None  # or the scene would not have been accepted
+        return 2 * pressure * sail_shape(scene).facing() / device.mass
     return film.characteristic_acceleration(area=device.area, mass=device.mass, pressure=pressure)
 
 
 def _solar_sail(device: SolarSail, scene: Scene, design: Any) -> LoweredDevice:
     film = _film(device)
     strength = _film_strength(device, scene, design) * AU**2 / film.total
-    return LoweredDevice(dynamics.SOLAR_SAIL, solar_sail.Parameters(strength, film.b1, film.b2, film.b3))
+    numbers = solar_sail.Parameters(strength, film.b1, film.b2, film.b3)
+    if device.shape is None:
+        return LoweredDevice(dynamics.SOLAR_SAIL, numbers)
+    from sailviz.simulation.sail_shape import thrust_of_shape  # trimesh, which flat sails do without
+
+    pressure = radiation_pressure(scene)
+    assert pressure is not None  # as for every sail that does not say its strength
+    return LoweredDevice(dynamics.SOLAR_SAIL, numbers, thrust_of_shape(scene, pressure, has_sky(scene)))
 
 
 def _solar_sail_words(device: SolarSail) -> Words:

@@ -5,16 +5,17 @@ from __future__ import annotations
 import numpy as np
 
 from sailviz import elements as orbital
-from sailviz import ephemeris
-from sailviz.constants import J2_EARTH, RADIUS_EARTH
+from sailviz import ephemeris, frames
+from sailviz.constants import AU, J2_EARTH, RADIUS_EARTH
 from sailviz.environment import magnetosphere
 from sailviz.environment.eclipse import CONE, NO_SHADOW
 from sailviz.environment.sky import CENTRE
 from sailviz.propagate import dynamics, sky_callback, voltage_callback
 from sailviz.propagate import low_orbit_callback as low_orbit
+from sailviz.scene.device import SolarSail
 from sailviz.scene.sky import shadow_kind
 from sailviz.simulation.bodies import epoch_of
-from sailviz.simulation.device import device_of
+from sailviz.simulation.device import device_of, radiation_pressure
 from sailviz.simulation.environment import parts_of, watches_shadow
 from sailviz.simulation.lowered import Array, Columns, Place
 from sailviz.simulation.plan import Plan
@@ -75,6 +76,37 @@ def axes_of_light(p: Plan, time: Array, states: Array, normal: Array) -> Array |
     values = sky_callback.observe_sky(time, states, normal, p.model.parameters)
     rows = (sky_callback.FROM_LIGHT, sky_callback.EAST, sky_callback.NORTH)
     return np.stack([values[row : row + 3].T for row in rows], axis=-1)
+
+
+def rolled(p: Plan, body: Array) -> Array:
+    """Body axes (n, 3, 3), as columns, turned about z by the roll of a sail with a shape."""
+    device = p.scene.device
+    if not isinstance(device, SolarSail) or not device.roll:
+        return body
+    turned: Array = body @ frames.turn_z(device.roll).T
+    return turned
+
+
+def torques_of_light(p: Plan, time: Array, states: Array, factor: Array, body: Array) -> Columns:
+    """Torque of the light (n,) N m about the origin of a sail with a shape, along its axes: what its control has to
+    hold. factor (n,) of its thrust; body (n, 3, 3) its axes as columns."""
+    device = p.scene.device
+    if not isinstance(device, SolarSail) or device.shape is None:
+        return {}
+    from sailviz.simulation.sail_shape import light_torque
+
+    towards, distance = frames.unit(states[:3].T), np.linalg.norm(states[:3], axis=0)
+    if p.sky is not None:
+        values = sky_callback.observe_sky(time, states, body[..., 2].copy(), p.model.parameters)
+        towards, distance = (
+            values[sky_callback.FROM_LIGHT : sky_callback.FROM_LIGHT + 3].T,
+            values[sky_callback.DISTANCE],
+        )
+        factor = factor * values[sky_callback.SHARE]
+    pressure = radiation_pressure(p.scene)
+    assert pressure is not None  # as for every sail that does not say its strength
+    torque = light_torque(p.scene, factor * pressure * (AU / distance) ** 2, towards, body)
+    return {f"light_torque_{axis}_N_m": torque[:, i].copy() for i, axis in enumerate("xyz")}
 
 
 def voltages(model: dynamics.Model) -> Array:

@@ -14,11 +14,11 @@ import numpy as np
 from sailviz.errors import Fault, SceneError
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.callbacks import user_address
-from sailviz.propagate.choice import Choice, choose
+from sailviz.propagate.choice import DOP853, Choice, choose
 from sailviz.propagate.events import Watch, watch
 from sailviz.propagate.voltage_callback import R_REF, U_REF, WANTED, voltage_callback
 from sailviz.run.arrays import Body
-from sailviz.scene.device import DistanceControl, control_of
+from sailviz.scene.device import DistanceControl, SolarSail, control_of
 from sailviz.scene.loading import Scene
 from sailviz.scene.phases import scene_of
 from sailviz.simulation.environment import parts_of, surroundings
@@ -36,7 +36,7 @@ from sailviz.simulation.bodies import body_of, epoch_of
 from sailviz.simulation.device import device_of, strength_or_none
 from sailviz.simulation.events import latest_end, quantities_watched, watched
 from sailviz.simulation.identity import identity_of
-from sailviz.simulation.sky import SceneSky, sky_of, under_sky
+from sailviz.simulation.sky import SceneSky, pushed_by_shape, sky_of, under_sky
 from sailviz.simulation.start import design_of, held_radius, initial_state
 from sailviz.simulation.steering import steering_of
 
@@ -103,7 +103,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
     flight = Flight(scene, design, position, velocity, device, shape, strength, begin)
     steered = steering_of(scene.steering).lower(scene.steering, flight)
     sky = sky_of(scene, body, epoch_of(scene))
-    device, steered, overhead = under_sky(sky, device, steered)
+    device, steered, overhead = pushed_by_shape(*under_sky(sky, device, steered))
     device, overhead = by_its_force(scene, device, overhead)
     addresses, keep = _own_functions(steering=steering, force=force)
     if steering is not None:
@@ -207,6 +207,9 @@ def _integrator(
 ) -> Choice:
     """Which integrator a scene gets. SceneError where the one asked for cannot do it."""
     run = scene.propagation
+    shaped = isinstance(scene.device, SolarSail) and scene.device.shape is not None
+    if shaped and run.integrator == "auto":
+        return Choice(DOP853, "the force of a shape, read from a table, has kinks")
     found = choose(model, position, velocity, duration, breaks, run.integrator, run.tolerance, beside)
     if not found.possible:
         raise SceneError([Fault("propagation.integrator", f"{found.reason}.")], scene.source)

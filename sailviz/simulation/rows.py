@@ -18,7 +18,7 @@ from sailviz.propulsion.devices import CALLED, THRUSTER
 from sailviz.run.arrays import Attitude, Event, Run, Setting, Thrust
 from sailviz.run.devices import SAILS
 from sailviz.simulation.beside import observed_devices, sum_of, thrust_of
-from sailviz.simulation.environment_columns import axes_of_light, observe, voltages
+from sailviz.simulation.environment_columns import axes_of_light, observe, rolled, torques_of_light, voltages
 from sailviz.simulation.integration import INTEGRATORS
 from sailviz.simulation.no_progress import too_many, too_short, too_slow
 from sailviz.simulation.plan import Plan
@@ -159,7 +159,8 @@ def observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, fi
         on = on | np.any([each.on for each in devices.values()], axis=0)
     by_light = axes_of_light(p, time, states, normal)
     pitch, cone, clock = frames.pitch_cone_clock(axes if by_light is None else by_light, normal, acceleration)
-    turn = frames.quaternion(frames.body_axes(frames.stance(axes, normal), axes[..., 1]))
+    body = rolled(p, frames.body_axes(frames.stance(axes, normal), axes[..., 1]))
+    turn = frames.quaternion(body)
     stowed = ~np.any(normal, axis=1) if setting.craft.kind in SAILS else np.zeros(len(normal), bool)
     attitude = Attitude(np.where(stowed, np.nan, pitch), cone, np.where(stowed, np.nan, clock), normal, turn)
     thrust = thrust_of(acceleration, axes, on)
@@ -169,7 +170,7 @@ def observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, fi
     environment |= {name: values[interval] for name, values in p.schedule.histories.items()}
     if p.schedule.law is not None:
         environment["thrust_voltage_V"] = voltages(p.model)[interval]
-    environment |= columns
+    environment |= columns | torques_of_light(p, time, states, factor * throttle, body)
     return Run(
         setting,
         first,

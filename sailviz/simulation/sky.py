@@ -188,7 +188,7 @@ def under_sky(
     forces = list(device.forces)
     if device.kind in (SOLAR_SAIL, ELECTRIC_SAIL) and (away or shading or blown):
         pushed = pushed._replace(device=device.kind)
-        device = device._replace(kind=CALLED, callback=sky_thrust())
+        device = device._replace(kind=CALLED, callback=device.callback or sky_thrust())
     if scene.environment.gravity_of is not None:
         forces.append(sky_gravity())
     if dragged:
@@ -210,6 +210,17 @@ def under_sky(
     if jumps:
         keywords["edges"] = sky_edges()
     return device._replace(forces=tuple(forces)), steered, keywords
+
+
+def pushed_by_shape(
+    device: LoweredDevice, steered: LoweredSteering, keywords: dict[str, Any]
+) -> tuple[LoweredDevice, LoweredSteering, dict[str, Any]]:
+    """A sail whose force a callback of its shape knows, under a sky or without one; every other device as it is."""
+    if device.callback is None or device.kind != SOLAR_SAIL:
+        return device, steered, keywords
+    parts = dict(keywords.get("sky", {}))
+    parts["pushed"] = parts.get("pushed", Pushed())._replace(device=SOLAR_SAIL)
+    return device._replace(kind=CALLED), steered, keywords | {"sky": parts}
 
 
 def _by_light(found: SceneSky, steered: LoweredSteering, device: int) -> tuple[by_light.Parameters, LoweredSteering]:

@@ -116,6 +116,30 @@ def varying_drive(scene: Scene) -> Faults:
     return found
 
 
+def sail_with_a_shape(scene: Scene) -> Faults:
+    """What knows flat sails only."""
+    shaped = [device for device in scene.devices if isinstance(device, SolarSail) and device.shape is not None]
+    if not shaped:
+        return []
+    found: Faults = []
+    if scene.place is not None:
+        found.append(("device.shape", "a sail with a shape is its craft's only device, in no list of several"))
+    if shaped[0].control is not None:
+        found.append(("device.control", "a film that darkens is known of flat sails only, not of one with a shape"))
+    if steering_of(scene).primer:
+        found.append(
+            (
+                "steering.kind",
+                f'"{scene.steering.kind if scene.steering else ""}" makes the most of a flat film: '
+                "give the shape's flat sail by area, or another steering",
+            )
+        )
+    if scene.ensemble or scene.chaos:
+        place = "ensemble[0]" if scene.ensemble else "chaos[0]"
+        found.append((place, "ensembles fly flat sails, not one with a shape"))
+    return found
+
+
 def steepest_pitch(scene: Scene) -> Faults:
     """Pitch angles for which the force is known."""
     device, angles = device_of(scene), steering_of(scene).pitch(scene.steering)

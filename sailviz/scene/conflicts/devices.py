@@ -50,6 +50,10 @@ def _sail_as_designed(device: SolarSail | ElectricSail) -> bool:
     return device.characteristic_acceleration == "as designed"
 
 
+def _film_first_order(device: SolarSail) -> list[str]:
+    return [] if device.shape is None else ["the first-order solution knows flat sails, not one with a shape"]
+
+
 def _electric_design(device: ElectricSail) -> Faults:
     return [] if device.model == "final" else [("device.model", 'orbits are designed with the "final" model')]
 
@@ -92,7 +96,9 @@ def _brake_decay(scene: Scene, device: PlasmaBrake) -> list[str]:
 
 
 DEVICES: dict[type[Section], DeviceFits[Any]] = {  # the functions of each record take the class that it stands under
-    SolarSail: DeviceFits[SolarSail](sail=True, sunlight=True, as_designed=_sail_as_designed),
+    SolarSail: DeviceFits[SolarSail](
+        sail=True, sunlight=True, as_designed=_sail_as_designed, first_order=_film_first_order
+    ),
     ElectricSail: DeviceFits[ElectricSail](
         sail=True,
         wind=True,

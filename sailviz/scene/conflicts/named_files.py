@@ -6,8 +6,10 @@ from typing import TYPE_CHECKING
 
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.ensembles import placed_ensembles
+from sailviz.scene.device import SolarSail
 from sailviz.scene.environment import ReplayedWind
 from sailviz.scene.named_files import folder_of, outside, unreadable
+from sailviz.scene.shape import FileShape
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
@@ -20,5 +22,8 @@ def files(scene: Scene) -> Faults:
     named = [(f"{place}.file", wind.file) for place, wind in placed if isinstance(wind, ReplayedWind)]
     if scene.environment.space_weather is not None:
         named.append(("environment.space_weather.file", scene.environment.space_weather.file))
+    device = scene.device
+    if isinstance(device, SolarSail) and isinstance(device.shape, FileShape):
+        named.append(("device.shape.file", device.shape.file))
     folder = folder_of(scene)
     return [(place, what) for place, name in named if (what := outside(folder, name) or unreadable(folder, name))]

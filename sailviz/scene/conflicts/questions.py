@@ -34,6 +34,7 @@ QUESTIONS = (
     departures.propellant,
     craft.varying_drive,
     craft.brightness,
+    craft.sail_with_a_shape,
     moments.epoch,
     low_orbit.known_of_the_earth,
     low_orbit.tether,

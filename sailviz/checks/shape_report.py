@@ -13,19 +13,19 @@ import numpy as np
 
 from sailviz.constants import RADIATION_PRESSURE
 from sailviz.propulsion import shaped_sail
-from sailviz.propulsion.surfaces import back_named, film_named
 from sailviz.recording.shape_picture import LitShape
+from sailviz.scene import load_scene
+from sailviz.scene.device import SolarSail
 from sailviz.shapes import kept_tables, light_table, shadows
-from sailviz.shapes.facets import Coefficients, Shape, Surface, subdivided
+from sailviz.shapes.facets import Shape
 from sailviz.shapes.file_checks import ShapeError
 from sailviz.shapes.light_force import pressure, tensors
 from sailviz.shapes.light_table import LightTable
-from sailviz.shapes.own_files import read_parts, shape_of
+from sailviz.simulation.sail_shape import of_file, sail_shape, surface_named
 
 PITCHES = (0, 35)  # deg, of the report
 DRAWN = tuple(range(0, 90, 5))  # deg, of the recording
 LOOKS = 400  # random directions in which the table is tried
-FINE = 7e-4  # share of the films' area that a facet of a file may have where it may be shaded
 CLOSE = 60.0  # deg from the Sun line within which a table is judged apart
 
 
@@ -34,21 +34,8 @@ def shape_of_file(
 ) -> Shape:
     """The shape of a file of facets. film, back : words for every film; parts : NAME=FILM[/BACK] for single ones.
     ShapeError."""
-    found = read_parts(file, unit, front)
-    said = dict(_part(word) for word in parts)
-    surfaces = {}
-    for name in found.meshes:
-        if name in said:
-            its_film, _, its_back = said[name].partition("/")
-            surfaces[name] = surface_named(its_film, its_back or back, found.closed(name))
-        elif found.closed(name):
-            surfaces[name] = Surface(Coefficients(0.5, 0.0, 0.0))
-        else:
-            surfaces[name] = surface_named(film, back, False)
-    for name in said:
-        surfaces.setdefault(name, Surface(Coefficients(0.5, 0.0, 0.0)))  # which `shape_of` refuses by its name
-    shape = shape_of(found, surfaces)
-    return subdivided(shape, FINE) if shadows.may_shade(shape) else shape
+    named = dict(_part(word) for word in parts)
+    return of_file(file, unit, front, surface_named(film, back, False), named, back)
 
 
 def _part(word: str) -> tuple[str, str]:
@@ -56,15 +43,6 @@ def _part(word: str) -> tuple[str, str]:
     if not equals or not name or not material:
         raise ShapeError(f"{word!r} is not NAME=FILM[/BACK]")
     return name, material
-
-
-def surface_named(film: str, back: str, closed: bool) -> Surface:
-    """A surface by words. ShapeError for a word that is none."""
-    try:
-        front = Coefficients(*film_named(film))
-        return Surface(front) if closed else Surface(front, Coefficients(*back_named(film, back)))
-    except ValueError as error:
-        raise ShapeError(str(error)) from None
 
 
 @dataclass(frozen=True)
@@ -242,6 +220,16 @@ def report(
     except ValueError as error:
         raise ShapeError(f"{name}: {error}") from None
     return Report(name, shape, table, shadow, interpolation)
+
+
+def report_of_scene(name: str) -> Report:
+    """The report of the sail of a scene, with the table that it flies by. ShapeError, SceneError."""
+    scene = load_scene(name)
+    section = scene.device.shape if isinstance(scene.device, SolarSail) else None
+    if section is None:
+        raise ShapeError(f"{name} is a scene without a sail that has a shape")
+    found = sail_shape(scene)
+    return Report(name, found.shape, found.table, section.shadow, section.interpolation)
 
 
 def _numbers(b: Sequence[float]) -> str:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 @click.command()
-@click.argument("file", metavar="FILE")
+@click.argument("file", metavar="FILE|SCENE")
 @click.option("--unit", metavar="UNIT", help="m, cm, mm, in, ft or km: of STL, OBJ and PLY, which have none.")
 @click.option("--front", default="-z", show_default=True, metavar="AXIS", help="Axis of the file that the front faces.")
 @click.option("--film", default="ideal", show_default=True, help="Of every film: a name, or b1,b2,b3.")
@@ -51,7 +51,8 @@ def shape(
     """Say what light does to a shape: its area and parts, force and centre of pressure facing the Sun and at 35 deg,
     and how well tensors and table say it.
 
-    FILE is an STL, OBJ, GLB, PLY or 3MF file. Body axes: +z away from the Sun.
+    FILE is an STL, OBJ, GLB, PLY or 3MF file, or a scene (.toml) whose sail has a shape. Body axes: +z away from the
+    Sun.
     """
     from sailviz.errors import SailvizError
     from sailviz.files import check
@@ -80,8 +81,10 @@ def shape(
 def _report(
     file: str, materials: dict[str, Any], cells: int, interpolation: str, shadow: bool, progress: Any
 ) -> Report:
-    """The report of a file."""
+    """The report of a file of facets, or of a scene, which says all else itself."""
     from sailviz.checks import shape_report
 
+    if file.lower().endswith(".toml"):
+        return shape_report.report_of_scene(file)
     shape = shape_report.shape_of_file(file, **materials)
     return shape_report.report(file, shape, cells, interpolation, shadow, progress)

@@ -77,4 +77,4 @@ def _thrust(time, state, parameters, own, number, out):
 def shape_thrust(push: float, under_sky: bool, roll: float, table: Sequence[float]) -> Callback:
     """A sail of a shape. push : 2 P r_E^2, N; roll : rad about the normal; table : of `shapes.light_table`."""
     head = [push, float(under_sky), float(np.cos(roll)), float(np.sin(roll))]
-    return callback(_thrust, np.concatenate([head, table]))
+    return callback(_thrust, [*head, *table])

@@ -168,7 +168,7 @@ def thrust_of_shape(scene: Scene, pressure: float, under_sky: bool) -> Callback:
     """What pushes a sail of a shape. pressure : N/m2 at 1 au."""
     assert isinstance(scene.device, SolarSail)
     found = sail_shape(scene)
-    return shape_thrust(2 * pressure * AU**2, under_sky, scene.device.roll or 0.0, found.table.numbers)
+    return shape_thrust(2 * pressure * AU**2, under_sky, scene.device.roll or 0.0, found.table.numbers.tolist())
 
 
 def light_torque(scene: Scene, pressure: np.ndarray, towards: np.ndarray, axes: np.ndarray) -> np.ndarray:

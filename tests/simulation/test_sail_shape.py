@@ -1,0 +1,175 @@
+"""Sails of any shape in flight: against two codes of the source, the flat sail, and what the recording says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from sailviz import load_scene, simulate
+from sailviz.constants import AU, DAY, RADIATION_PRESSURE
+from sailviz.errors import SceneError
+from sailviz.propulsion.solar_sail import Film, black_back
+from sailviz.simulation.sail_shape import sail_shape
+
+A_MEAN = 120.0  # m2/kg of the source's sail, 1 kg
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path_factory, monkeypatch):
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.getbasetemp() / "tables"))
+
+
+def scene(device: dict, days: float = 400.0, outputs: int = 3, **more: object) -> dict:
+    return {
+        "title": "a sail with a shape",
+        "start": {"kind": "circular", "radius_au": 1},
+        "device": {"kind": "solar-sail", **device},
+        "steering": {"kind": "orbital", "pitch_deg": 35, "clock_deg": 90},
+        "propagation": {"duration_d": days, "outputs": outputs, "tolerance": 1e-13},
+        **more,
+    }
+
+
+def cap(slope: float, **more: object) -> dict:
+    """120 m2/kg of mouth."""
+    shape = {"kind": "cap", "diameter_m": float(np.sqrt(4 * A_MEAN / np.pi)), "edge_slope_deg": slope, "cells": 4}
+    return {"mass_kg": 1, "back": "same", "shape": shape | {"shadow": False}, **more}
+
+
+def square(**more: object) -> dict:
+    return {"kind": "square", "side_m": 9.27, "cells": 4, "shadow": False, **more}
+
+
+@pytest.mark.parametrize(
+    ("slope", "film", "r", "radial", "transverse"),
+    [
+        (0.0, "jpl-2015", 2.275772608549, 4000.773415115, 16755.063647586),
+        (20.0, "jpl-2015", 2.154117676763, 3173.865667124, 17372.361574702),
+        (20.0, "ideal", 2.345279559230, 4451.783830478, 16405.693661016),
+    ],
+)
+def test_a_billowed_sail_flies_as_two_codes_have_it(slope, film, r, radial, transverse):
+    """Cap whose axis keeps a pitch of 35 deg, 400 days from 1 au: within 15 m and 1e-5 m/s."""
+    run = simulate(load_scene(scene(cap(slope, film=film))))
+    position, velocity = run.position[-1], run.velocity[-1]
+    size = np.linalg.norm(position)
+    assert size / AU == pytest.approx(r, abs=1e-10)
+    assert velocity @ position / size == pytest.approx(radial, abs=1e-5)
+    assert np.linalg.norm(np.cross(position, velocity)) / size == pytest.approx(transverse, abs=1e-5)
+
+
+@pytest.mark.parametrize("film", ["ideal", "jpl-2015", "eta-perfect"])
+def test_a_flat_shape_flies_as_the_flat_sail(film):
+    """Of the same area and mass, steered out of its plane too: forces within 1e-12, places within metres."""
+    flat = scene({"mass_kg": 14, "area_m2": 9.27**2, "film": film}, 200, 20)
+    shaped = scene({"mass_kg": 14, "film": film, "back": "same", "shape": square()}, 200, 20)
+    for each in (flat, shaped):
+        each["steering"] |= {"clock_deg": 60}
+    one, other = simulate(load_scene(flat)), simulate(load_scene(shaped))
+    size = one.thrust.magnitude.max()
+    np.testing.assert_allclose(other.thrust.acceleration[0], one.thrust.acceleration[0], rtol=0, atol=1e-12 * size)
+    np.testing.assert_allclose(other.position, one.position, rtol=0, atol=30)
+
+
+def test_the_recorded_attitude_is_that_by_which_the_shape_is_pushed():
+    """A heliogyro, whose force has parts along all its axes: the force of the table along the recorded axes, rolled;
+    and the torque that control has to hold."""
+    shape = {"kind": "heliogyro", "blades": 1, "length_m": 50, "chord_m": 1, "pitch_deg": 15, "twist_deg": 5}
+    device = {"mass_kg": 2, "back": "same", "film": "jpl-2015", "roll_deg": 40, "shape": shape | {"shadow": False}}
+    run = simulate(load_scene(scene(device, 50, 5)))
+    found = sail_shape(load_scene(scene(device, 50, 5)))
+    from sailviz.propulsion.shaped_sail import force_and_torque
+
+    for i in range(len(run.time)):
+        axes = turned(run.attitude.quaternion[i])
+        np.testing.assert_allclose(axes[:, 2], run.attitude.normal[i], rtol=0, atol=1e-12)
+        distance = np.linalg.norm(run.position[i])
+        force, torque = force_and_torque(axes.T @ run.position[i] / distance, found.table.numbers)
+        push = 2 * RADIATION_PRESSURE * (AU / distance) ** 2
+        np.testing.assert_allclose(run.thrust.acceleration[i], axes @ force * push / 2, rtol=1e-9, atol=1e-16)
+        recorded = [run.environment[f"light_torque_{axis}_N_m"][i] for axis in "xyz"]
+        np.testing.assert_allclose(recorded, push * torque, rtol=1e-9, atol=1e-15)
+    assert np.abs(run.environment["light_torque_z_N_m"]).min() > 1e-6
+
+
+def turned(q: np.ndarray) -> np.ndarray:
+    """Rotation matrix of a quaternion x, y, z, w, written out."""
+    x, y, z, w = q
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def test_a_billowed_sail_is_a_little_weaker_than_a_flat_one_and_says_so():
+    billowed = load_scene(scene({"mass_kg": 14, "back": "black", "film": "jpl-2015", "shape": square(sag=0.05)}, 10))
+    flat = load_scene(scene({"mass_kg": 14, "back": "black", "film": "jpl-2015", "shape": square()}, 10))
+    weaker, whole = sail_shape(billowed).facing(), sail_shape(flat).facing()
+    assert 0.9 * whole < weaker < 0.999 * whole
+    assert whole == pytest.approx(9.27**2 * (0.0723 + 0.8554 - 0.0030), rel=1e-12)
+
+
+def test_the_brightness_of_the_light_acts_on_a_shape():
+    device = {"mass_kg": 14, "back": "same", "shape": square()}
+    plain, bright = (
+        simulate(load_scene(scene(device, 1, 2, **more))) for more in ({}, {"light": {"pressure_uN_m2": 9.126}})
+    )
+    np.testing.assert_allclose(bright.thrust.magnitude[0], 2 * plain.thrust.magnitude[0], rtol=1e-12)
+
+
+def test_a_black_back_is_that_of_the_films_own_emissivities():
+    """(3.18)-(3.20) with the roles swapped: cr 0, (0.27 0.67 - 0.025 0.79) / 0.295 / 2."""
+    back = black_back((0.91, 0.94, 0.79, 0.67, 0.025, 0.27))
+    assert back == Film(0.5, 0.0, pytest.approx((0.27 * 0.67 - 0.025 * 0.79) / 0.295 / 2, abs=1e-15))
+
+
+SHAPE = {"shape": square(), "back": "same", "mass_kg": 14}
+
+
+@pytest.mark.parametrize(
+    ("device", "words"),
+    [
+        ({"shape": square(), "mass_kg": 14}, "a sail with a shape needs its back"),
+        ({"shape": square(), "back": "same"}, "needs exactly one of"),
+        (SHAPE | {"area_m2": 80}, "has area.mass and shape.mass"),
+        (SHAPE | {"characteristic_acceleration_mm_s2": 1}, "needs exactly one of"),
+        ({"area_m2": 80, "mass_kg": 14, "back": "same"}, "back belongs to a sail with a shape"),
+        ({"area_m2": 80, "mass_kg": 14, "roll_deg": 3}, "roll belongs to a sail with a shape"),
+        (SHAPE | {"shape": square(cells=7)}, "multiple of 2"),
+        (SHAPE | {"shape": {"kind": "cube"}}, "is not a kind of device.shape"),
+        (SHAPE | {"shape": {"kind": "ring", "diameter_m": 3, "inner_diameter_m": 4}}, "must be less than diameter"),
+        (SHAPE | {"shape": {"kind": "file", "file": "../sail.stl"}}, "leads out of the folder"),
+        (SHAPE | {"shape": {"kind": "file", "file": "none.stl"}}, "there is no file"),
+        (SHAPE | {"control": {"kind": "electrochromic"}}, "a film that darkens is known of flat sails only"),
+    ],
+)
+def test_what_does_not_go_with_a_shape_is_refused(device, words):
+    with pytest.raises(SceneError, match=words):
+        load_scene(scene(device))
+
+
+def test_what_knows_flat_sails_only_is_refused():
+    local = scene(SHAPE)
+    local["steering"] = {"kind": "locally-optimal", "goal": "semi-major-axis"}
+    with pytest.raises(SceneError, match="makes the most of a flat film"):
+        load_scene(local)
+
+
+def test_a_file_that_lies_is_told_when_the_scene_is_flown(tmp_path):
+    (tmp_path / "a.stl").write_bytes(b" " * 80 + (10**6).to_bytes(4, "little"))
+    text = (
+        'title = "a"\n[start]\nkind = "circular"\nradius_au = 1\n[device]\nkind = "solar-sail"\nmass_kg = 1\n'
+        'back = "same"\nshape = {kind = "file", file = "a.stl", unit = "m"}\n[propagation]\nduration_d = 1\n'
+    )
+    (tmp_path / "a.toml").write_text(text)
+    with pytest.raises(SceneError, match="has 1000000 facets, more than 200000"):
+        simulate(load_scene(tmp_path / "a.toml"))
+
+
+def test_scenes_without_a_shape_say_nothing_of_it():
+    values = load_scene(scene({"mass_kg": 14, "area_m2": 80.0})).resolved()["device"]
+    assert not {"shape", "back", "roll"} & set(values)
+    assert DAY == 86400.0

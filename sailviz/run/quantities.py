@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from sailviz.compiled import Late
-from sailviz.elements import Elements, apoapsis, periapsis
+from sailviz.elements import apoapsis
 from sailviz.run import formulas
 from sailviz.run.arrays import Run
 
@@ -60,9 +60,16 @@ def _closed_form_error(run: Run) -> np.ndarray:
     raise TypeError("the error against a closed form takes the closed form too: expectations.py knows it")
 
 
-def _above_surface(distance: Callable[[Elements[np.ndarray]], np.ndarray]) -> Value:
-    """Of a length from the centre as a function of the elements, its height over the central body's radius."""
-    return lambda run: distance(run.elements) - run.setting.body.radius
+def _above_surface(distance: Value) -> Value:
+    """Of a length from the centre, its height over the central body's radius."""
+    return lambda run: distance(run) - run.setting.body.radius
+
+
+_periapsis = _of_state(formulas.periapsis)  # not a (1 - e), which has no digits left where a craft escapes
+
+
+def _apoapsis(run: Run) -> np.ndarray:
+    return apoapsis(run.elements)
 
 
 def _acted(name: str) -> Value:
@@ -100,16 +107,16 @@ VALUES: dict[str, Value] = {
     "inclination": lambda run: run.elements.inclination,
     "raan": lambda run: run.elements.raan,
     "true_anomaly": lambda run: run.elements.true_anomaly,
-    "periapsis": lambda run: periapsis(run.elements),
-    "apoapsis": lambda run: apoapsis(run.elements),
+    "periapsis": _periapsis,
+    "apoapsis": _apoapsis,
     "pitch": lambda run: run.attitude.pitch,
     "cone": lambda run: run.attitude.cone,
     "clock": lambda run: run.attitude.clock,
     "thrust_acceleration": lambda run: run.thrust.magnitude,
     "closed_form_error": _closed_form_error,
-    "perigee_altitude": _above_surface(periapsis),
+    "perigee_altitude": _above_surface(_periapsis),
     "mean_altitude": _mean_altitude,
-    "apogee_altitude": _above_surface(apoapsis),
+    "apogee_altitude": _above_surface(_apoapsis),
     "quasi_circular_altitude": _acted("quasi_circular_altitude_m"),
     "sunlit": _acted("sunlit"),  # its mean is the share of the time
     "sunlit_fraction": _acted("sunlit_fraction"),  # of the Sun's disc

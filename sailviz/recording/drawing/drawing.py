@@ -35,7 +35,7 @@ from sailviz.recording.drawing.phases import never_words, phase_notes, rows_at_s
 from sailviz.recording.drawing.plot_column import PlotView
 from sailviz.recording.drawing.row_words import plain_words, sparse_words, stowed_words
 from sailviz.recording.drawing.sail_close_up import log_close_up
-from sailviz.recording.drawing.samples import Frame, Samples
+from sailviz.recording.drawing.samples import Frame, Samples, as_flown
 from sailviz.recording.drawing.story import Arrows, Story, reach_of
 from sailviz.recording.drawing.system_view import log_system, system_words
 from sailviz.run.arrays import Event, Run, join
@@ -99,6 +99,7 @@ class Drawing:
             self._rows.append(last)
             self._numbers.append(np.array([last.first]))
         run = join(self._rows)
+        self._frame = as_flown(self._frame, run)
         samples = Samples.of(run, np.concatenate(self._numbers), self._frame)
         reach = reach_of(self._setting, run) / self._frame.unit
         story = Story(samples, self._frame, self._craft, tuple(self._events), reach)

@@ -4,7 +4,7 @@ and over its time.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import rerun as rr
@@ -22,6 +22,7 @@ SPARSE_ROWS = 1010  # where the craft goes round slowly
 SPARSE = 1 / 12  # revolutions between drawn rows above which lines from row to row would be a zigzag
 TURNS = 30.0  # revolutions that are shown of a run whose rows are sparse
 PLANE_TURNS = 6.0  # revolutions round a planet from which a run shows the plane of its orbit
+LEAVES = 0.5  # revolutions flown, over those at the first row's pace, below which no picture is slowed
 SMOOTH = 72  # points of a trail per revolution
 CLOSE = 1 / 6  # revolutions between drawn rows in a dense window
 LOW, HIGH = 2.0, 5.0  # radii of a planet within which periapsis and apoapsis of a low orbit lie
@@ -118,6 +119,16 @@ def longitude(elements: Elements[np.ndarray]) -> np.ndarray:
     """True longitude, rad: smooth where an orbit is circular or equatorial, which its parts are not."""
     angle: np.ndarray = elements.raan + elements.argument + elements.true_anomaly
     return angle
+
+
+def as_flown(frame: Frame, run: Run) -> Frame:
+    """The frame once the drawn rows are known: a craft that leaves, or spirals out, goes round so much less than the
+    pace of its first orbit promised that every row is drawn in its own place."""
+    a = run.elements.semi_major_axis
+    pace = np.sqrt(np.divide(frame.mu, a**3, out=np.zeros(len(a)), where=np.isfinite(a) & (a > 0)))
+    turns = float(np.sum(0.5 * (pace[1:] + pace[:-1]) * np.diff(run.time))) / (2 * np.pi)
+    leaves = frame.sparse and turns < LEAVES * frame.turns
+    return replace(frame, sparse=False) if leaves else frame
 
 
 @dataclass(frozen=True)

@@ -148,12 +148,17 @@ def air_drag(scene):
     return drag
 
 
+ZONAL = {n: (Legendre.basis(n), Legendre.basis(n).deriv()) for n in (2, 3, 4)}
+
+
 def oblate(environment, r):
     """Pull of the zonal harmonics: gradient of -(mu / r) J_n (R / r)^n P_n(z / r)."""
     size = np.linalg.norm(r)
     s, up, a = r[2] / size, r / size, np.zeros(3)
     for n, j in ((2, J2 * environment.j2), (3, J3 * environment.j3), (4, J4 * environment.j4)):
-        p = Legendre.basis(n)
+        if not j:
+            continue
+        p, slope = ZONAL[n]
         k = MU_EARTH * j * (RADIUS_EARTH / size) ** n / size**2
-        a = a + k * ((n + 1) * p(s) * up - p.deriv()(s) * (np.array([0, 0, 1.0]) - s * up))
+        a = a + k * ((n + 1) * p(s) * up - slope(s) * (np.array([0, 0, 1.0]) - s * up))
     return a

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from independent.constants import AU, FILMS, MU_SUN
+from independent.constants import AU, FILMS, MU_SUN, body
 from independent.film import Force, esail_force, film_force, film_of
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
@@ -116,6 +116,9 @@ def steepest(function, r, v):
 
 
 def local_primer(scene, t, r, v):
+    if scene.steering.goal == "energy":
+        assert not scene.steering.minimum_perigee or at_least(scene, r, v) > scene.steering.minimum_perigee + 100e3
+        return v if scene.steering.sense == "increase" else -v
     if scene.steering.goal != "inclination":
         raise NotImplementedError(scene.steering.goal)
 
@@ -124,6 +127,13 @@ def local_primer(scene, t, r, v):
         return np.arctan(np.sqrt(h[0] ** 2 + h[1] ** 2) / h[2]) if abs(h[2]) > abs(h[0]) else np.arccos(h[2] / root(h))
 
     return (1 if scene.steering.sense == "increase" else -1) * steepest(inclination, r, v)
+
+
+def at_least(scene, r, v):
+    """Distance of the nearest point of the osculating orbit: above the margin the guard of a perigee sleeps."""
+    mu, h = body(scene)[0], np.cross(r, v)
+    e = np.cross(v, h) / mu - r / np.linalg.norm(r)
+    return h @ h / mu / (1 + np.linalg.norm(e))
 
 
 def root(x):
@@ -162,6 +172,8 @@ def soft_edges(scene, t, r, v):
     """The share of the best thrust that a law steered by the state uses; 1 of any other."""
     law = scene.steering
     if law is None or law.kind not in ("lyapunov", "locally-optimal"):
+        return 1.0
+    if scene.body != "sun" and film_of(scene.device)[:3] == (0, 1, 0):  # ends by itself where the light is elsewhere
         return 1.0
     primer = PRIMERS[law.kind](scene, t, r, v)
     size = np.linalg.norm(primer)

@@ -65,7 +65,11 @@ def _above_surface(distance: Value) -> Value:
     return lambda run: distance(run) - run.setting.body.radius
 
 
-_periapsis = _of_state(formulas.periapsis)  # not a (1 - e), which has no digits left where a craft escapes
+def _periapsis(run: Run) -> np.ndarray:
+    """Not a (1 - e), which has no digits left where a craft escapes."""
+    h = _of_state(formulas.angular_momentum)(run)
+    found: np.ndarray = h**2 / run.setting.body.mu / (1 + run.elements.eccentricity)
+    return found
 
 
 def _apoapsis(run: Run) -> np.ndarray:

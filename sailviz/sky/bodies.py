@@ -31,3 +31,10 @@ BODIES = {
     "earth-moon": SkyBody("Earth and Moon", 403_503.235_6e9, 0.0, 3),
 }
 MOON_SHARE = BODIES["moon"].mu / (BODIES["earth"].mu + BODIES["moon"].mu)  # of the way from the Earth to the barycentre
+
+
+def sphere_of_influence(mu: float, mu_larger: float, distance: float) -> float:
+    """Radius, m, about a body within which its own pull is disturbed less than that of a larger one so far away:
+    Laplace's, d (mu/mu_larger)^(2/5) (R. H. Battin, An Introduction to ... Astrodynamics, section 8.5)."""
+    share: float = (mu / mu_larger) ** 0.4
+    return distance * share

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from sailviz.constants import DAY, YEAR
+from sailviz.constants import AU, DAY, YEAR
 from sailviz.sky import BODIES, Sky
+from sailviz.sky.bodies import sphere_of_influence
 from sailviz.sky.kernels import Kernel, kernel_file
 from sailviz.sky.moon_series import moon_of_date
 from sailviz.sky.places import tdb_ahead
@@ -95,3 +96,10 @@ def test_a_kernel_says_what_it_does_not_hold(tmp_path):
 def test_a_kernel_by_its_path_is_the_same_as_by_its_name():
     named, own = Sky(EPOCH, source="de421"), Sky(EPOCH, source=str(kernel_file("de421")))
     assert np.array_equal(named.position("saturn", "venus", 1e6), own.position("saturn", "venus", 1e6))
+
+
+def test_spheres_of_influence_are_those_of_the_textbooks():
+    """R. R. Bate et al., Fundamentals of Astrodynamics: 66,300 km about the Moon, 0.925 million km about the Earth."""
+    moon, earth, sun = (BODIES[word].mu for word in ("moon", "earth", "sun"))
+    assert sphere_of_influence(moon, earth, 384_400e3) == pytest.approx(66_300e3, rel=0.005)
+    assert sphere_of_influence(earth, sun, AU) == pytest.approx(925_000e3, rel=0.005)

@@ -19,6 +19,7 @@ from sailviz.recording.drawing.ensemble_names import add_ensemble_names
 from sailviz.recording.drawing.fence import Fence, fence_of, log_fence
 from sailviz.recording.drawing.flights import Flight, log_body, log_flights
 from sailviz.recording.drawing.ghosts import log_ghosts
+from sailviz.recording.drawing.influence import log_influence
 from sailviz.recording.drawing.landmarks import (
     CRAFT,
     SUN,
@@ -79,6 +80,7 @@ def log_system(
         picture.log_pose("/world/pan", story.index, quaternion=about_axis(turn))
     log_landmarks(picture, story, found, first_eye(camera), names)
     log_passages(picture, story, first_eye(camera), names)
+    log_influence(picture, story, names)
     if story.setting.ensembles:
         add_ensemble_names(story, names)
     add_push_name(story, size, turned(np.tile(first_eye(camera), (len(turn), 1)), -turn), names)

@@ -9,7 +9,7 @@ import numpy as np
 from . import phases
 from .facts import AU, DAY, MADE_UP, PLANETS, TILT, planet_place
 from .measure import hue, same_place
-from .seen import poses, shown, spots
+from .seen import poses, shown, some, spots
 from .system import PLANET_HUES
 
 MU_SUN = 1.327_124_400_18e20
@@ -179,6 +179,45 @@ def moon_way(f, entity, name):
     """Through the places of its body."""
     (line,) = f.picture.line(entity, 0)
     same_place(line, np.array([spot[0] for spot in spots(f, f"/world/planets/{name}/body")]), size=100.0)
+
+
+SPHERES = {"moon": ("Moon", 4_902.800e9 / 398_600.44e9), "earth": ("Earth", 398_600.44e9 / 132_712_440_018e9)}
+
+
+def sphere(f, name):
+    """Centres (n, 3) and radius, m, of a body's sphere of influence: a part (m/M)^(2/5) of the mean distance."""
+    body, ratio = SPHERES[name]
+    assert body == "Moon" or f.truth.seconds is not None
+    if body == "Earth":
+        return np.zeros((len(f.truth), 3)), ratio**0.4 * f.truth.environment["sun_distance_m"].mean()
+    places = np.array([spot[0] for spot in spots(f, f"/world/planets/{body}/body")]) * f.truth.length
+    return places, ratio**0.4 * np.linalg.norm(places, axis=1).mean()
+
+
+def influence(f, entity, name):
+    """Rings as far from their body, wherever it is, as its sphere of influence reaches; the flight crosses or nears
+    it."""
+    places, radius = sphere(f, name)
+    for row in some(f, 5):
+        points = np.concatenate(f.picture.line(entity, row)) * f.truth.length
+        off = np.linalg.norm(points - places[row], axis=1)
+        assert np.abs(off - radius).max() < 2e-3 * radius  # the mean distance is one of the drawn rows
+    apart = np.linalg.norm(f.truth.position - places, axis=1)
+    assert apart.min() < 2 * radius
+    assert apart.max() > radius
+
+
+def influence_name(f, entity, name):
+    """On top of its sphere, whose it is and how far it reaches, while the flight is near."""
+    places, radius = sphere(f, name)
+    for row, place in shown(f, entity):
+        assert np.linalg.norm(f.truth.position[row] - places[row]) < 2.02 * radius
+        off = place * f.truth.length - places[row]
+        assert np.linalg.norm(off - [0.0, 0.0, 1.06 * radius]) < 5e-3 * radius
+    (label,) = f.picture.fixed(entity, "Points3D:labels")
+    said = re.fullmatch(r"sphere of influence of the (\w+), ([\d,.]+) km", label)
+    assert said[1] == SPHERES[name][0]
+    assert abs(float(said[2].replace(",", "")) * 1e3 - radius) < 0.05 * radius
 
 
 def planet_name(f, entity, name):

@@ -84,6 +84,10 @@ SYSTEM = (
     Claim("/world/planets/*/orbit", LINE, "mean elements", INERTIAL, "1/L", system.planet_orbit),
     Claim("/world/night/magnetopause", LINE, "Shue 1998", INERTIAL, "1/L", earth.magnetopause),
     Claim("/world/night/magnetopause/name", POINT, "its nose", INERTIAL, "1.05/L", earth.magnetopause_name),
+    Claim(
+        "/world/influence/*", f"{LINE} {MOVE}", "Laplace's sphere about its body", INERTIAL, "1/L", landmarks.influence
+    ),
+    Claim("/world/names/influence/*", POINT, "its top", INERTIAL, "1.06/L", landmarks.influence_name),
     Claim("/world/planets/*/way", LINE, "where its body is", INERTIAL, "1/L", landmarks.moon_way),
     Claim("/world/planets/*/body", POINT, "mean elements, or a circle", INERTIAL, "1/L", landmarks.planet_body),
     Claim("/world/names/Sun", POINT, "the Sun's name", INERTIAL, "1", system.sun_name),

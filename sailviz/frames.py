@@ -99,6 +99,17 @@ def quaternion(axes: ArrayLike) -> np.ndarray:
     return found
 
 
+def rotation(quaternions: ArrayLike) -> np.ndarray:
+    """Rotation matrices (..., 3, 3) of unit quaternions (..., 4) x y z w: their columns are the turned axes."""
+    x, y, z, w = np.moveaxis(np.asarray(quaternions, dtype=float), -1, 0)
+    rows = [
+        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+    ]
+    return np.stack([np.stack(row, -1) for row in rows], -2)
+
+
 def pitch_cone_clock(
     axes: ArrayLike, normal: ArrayLike, thrust: ArrayLike
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

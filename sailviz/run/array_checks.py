@@ -29,6 +29,7 @@ N = TypeVar("N", Event, Reference)
 NOTHING = np.zeros(0)
 BODIES = {"Sun": Body("Sun", MU_SUN, RADIUS_SUN), "Earth": Body("Earth", MU_EARTH, RADIUS_EARTH)}
 INSIDE = 0.9  # of the body's radius: what lies deeper is rather in the wrong unit than in the ground
+UNIT_LENGTH = 1e-2  # by which the length of a quaternion may be off 1
 ONE_PLACE = 1e-6  # of the distance: two rows of one time closer than this are one place, where the velocity jumps
 
 
@@ -318,6 +319,28 @@ class ArrayChecks:
             self.say(f"{name}: wanted lines of text, not {brief(values)}")
             return ()
         return tuple(map(str, values))
+
+    def attitude(self, values: ArrayLike, scalar: str | None, direction: str | None, rows: int | None) -> np.ndarray:
+        """Quaternions (n, 4) x y z w from body to world, of length 1, each of the sign nearer to the one before."""
+        if scalar not in ("first", "last"):
+            self.say('scalar: say where the scalar of a quaternion stands, "first" or "last"')
+        if direction not in ("body_to_world", "world_to_body"):
+            self.say('direction: say what a quaternion turns, "body_to_world" or "world_to_body"')
+        wanted = f"({rows if rows is not None else 'n'}, 4)"
+        found = self.array("attitude", values, wanted)
+        if found is NOTHING:
+            return NOTHING
+        if found.ndim != 2 or found.shape[1] != 4 or (rows is not None and len(found) != rows):
+            return self.refuse(f"attitude: shape {found.shape}, wanted {wanted}")
+        length = np.linalg.norm(found, axis=1)
+        off = np.flatnonzero(~(np.abs(length - 1.0) <= UNIT_LENGTH))
+        if len(off):
+            return self.refuse(f"attitude: row {self.row(off[0])} has the length {length[off[0]]:.6g}, and 1 is due")
+        found = found / length[:, None]
+        found = np.roll(found, -1, axis=1) if scalar == "first" else found
+        found = found * [-1.0, -1.0, -1.0, 1.0] if direction == "world_to_body" else found
+        turned = np.cumsum(np.sum(found[1:] * found[:-1], axis=1) < 0) % 2 == 1
+        return np.asarray(np.where(np.concatenate([[False], turned])[:, None], -found, found))
 
     def no_zeros(self, name: str, vectors: np.ndarray) -> None:
         zero = np.flatnonzero(np.linalg.norm(vectors, axis=1) == 0)

@@ -38,6 +38,9 @@ def trajectory(
     velocity: ArrayLike,
     *,
     normal: ArrayLike | None = None,
+    attitude: ArrayLike | None = None,
+    scalar: str | None = None,
+    direction: str | None = None,
     thrust: ArrayLike | None = None,
     mu: float = MU_SUN,
     body: str | None = None,
@@ -66,6 +69,8 @@ def trajectory(
 
     normal : (n, 3) of a sail, away from the Sun; by default the thrust's direction, without thrust the direction away
         from the central body. Zero where a sail is stowed, which then has no angles and must have no thrust
+    attitude : (n, 4) quaternions instead of a normal, which then is the body's z axis. scalar : where its scalar
+        stands, "first" or "last"; direction : "body_to_world" or "world_to_body". Both must be said
     thrust : (n, 3) acceleration m/s2; zero rows count as switched off
     mu m3/s2, body's name, radius m : the Sun's by default, the Earth's where mu is hers
     epoch : UTC of time 0, a datetime64, datetime or text. mass : kg, a number or (n,); NaN is
@@ -85,8 +90,8 @@ def trajectory(
     check.size("tethers", tethers, whole=True)
     lines = check.lines("look_for", look_for)
     given = _checked(
-        check, time, position, velocity, normal, thrust, mass, (body, mu, radius), epoch, device, environment,
-        references, events, gaps,
+        check, time, position, velocity, normal, (attitude, scalar, direction), thrust, mass, (body, mu, radius), epoch,
+        device, environment, references, events, gaps,
     )  # fmt: skip
     known_planets = planets and given.body.name == "Sun"
     setting = Setting(
@@ -109,7 +114,8 @@ def trajectory(
             "body": given.body.name,
             "mu": given.body.mu,
             "device": given.device,
-        },
+        }
+        | ({} if given.quaternion is None else {"attitude": "given"}),
         versions={"sailviz": __version__, "python": platform.python_version(), "numpy": np.__version__},
         accuracy=f"{accuracy} {given.note[0].upper()}{given.note[1:]}." if given.note else accuracy,
         identity="",
@@ -137,6 +143,7 @@ class _Given:
     references: tuple[Reference, ...]
     events: tuple[Event, ...]
     gaps: tuple[tuple[float, float], ...]
+    quaternion: np.ndarray | None  # (n, 4) x y z w, body to world
     note: str  # what is strange about the rows though it may be so
 
 
@@ -146,6 +153,7 @@ def _checked(
     position: ArrayLike,
     velocity: ArrayLike,
     normal: ArrayLike | None,
+    turned: tuple[ArrayLike | None, str | None, str | None],
     thrust: ArrayLike | None,
     mass: ArrayLike | None,
     body: tuple[str | None, float, float | None],
@@ -158,11 +166,12 @@ def _checked(
 ) -> _Given:
     """TrajectoryError with everything that is wrong, in the order of the arguments."""
     moment = check.epoch(epoch)
+    attitude, scalar, direction = turned
     kept = check.with_data(position, velocity)
     if kept is not None:
         count = len(np.ma.asarray(position))
-        time, position, velocity, normal, thrust, mass = (
-            _rows(values, kept, count) for values in (time, position, velocity, normal, thrust, mass)
+        time, position, velocity, normal, attitude, thrust, mass = (
+            _rows(values, kept, count) for values in (time, position, velocity, normal, attitude, thrust, mass)
         )
         if isinstance(environment, Mapping):
             environment = {name: _rows(values, kept, count) for name, values in environment.items()}
@@ -170,9 +179,14 @@ def _checked(
     rows = len(times) or None
     places, velocities = check.vectors("position", position, rows), check.vectors("velocity", velocity, rows)
     normals = None if normal is None else check.vectors("normal", normal, rows)
+    quaternions = None if attitude is None else check.attitude(attitude, scalar, direction, rows)
+    if quaternions is not None and normals is not None:
+        check.say("normal: an attitude is given, whose z axis is the normal: leave one of them out")
+    elif quaternions is not None and check.good:
+        normals = frames.rotation(quaternions)[..., 2]
     pushes = np.zeros((rows or 0, 3)) if thrust is None else check.vectors("thrust", thrust, rows)
     masses, centre = check.mass(mass, rows), check.body(*body)
-    kind = check.device(_suggested(normal, thrust) if device is None else device)
+    kind = check.device(_suggested(normal if attitude is None else attitude, thrust) if device is None else device)
     columns, curves = check.environment({} if environment is None else environment, rows), check.references(references)
     if check.good:
         check.order(times, places)
@@ -187,7 +201,8 @@ def _checked(
     marks = _with_jumps(marks, times, places, velocities, masses)
     note = "" if pushes.any() else strange  # thrust explains what gravity does not
     return _Given(
-        times, places, velocities, normals, pushes, masses, centre, moment, kind, columns, curves, marks, without, note
+        times, places, velocities, normals, pushes, masses, centre, moment, kind, columns, curves, marks, without,
+        quaternions, note
     )  # fmt: skip
 
 
@@ -226,12 +241,13 @@ def _derived(given: _Given, setting: Setting, bodies: dict[str, np.ndarray]) -> 
     normal = frames.unit(normal)
     stowed: np.ndarray = ~np.any(normal, axis=1)
     pitch, cone, clock = frames.pitch_cone_clock(axes, normal, thrust)
+    axes_of_body = frames.quaternion(frames.body_axes(frames.stance(axes, normal), axes[..., 1]))
     attitude = Attitude(
         np.where(stowed, np.nan, pitch),
         cone,
         np.where(stowed, np.nan, clock),
         normal,
-        frames.quaternion(frames.body_axes(frames.stance(axes, normal), axes[..., 1])),
+        axes_of_body if given.quaternion is None else given.quaternion,
     )
     return Run(
         setting,
@@ -282,6 +298,7 @@ def _identity(run: Run) -> str:
     told: tuple[object, ...] = (run.setting.resolved, str(run.setting.epoch), run.setting.craft)
     found = hashlib.sha256(repr((*told, run.setting.gaps) if run.setting.gaps else told).encode())
     thrust, normal = run.thrust.acceleration, run.attitude.normal
-    for values in (run.time, run.position, run.velocity, run.mass, thrust, normal, *run.environment.values()):
+    turned = (run.attitude.quaternion,) if run.setting.resolved.get("attitude") else ()
+    for values in (run.time, run.position, run.velocity, run.mass, thrust, normal, *turned, *run.environment.values()):
         found.update(np.ascontiguousarray(values).tobytes())
     return found.hexdigest()[:16]

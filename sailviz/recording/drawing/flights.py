@@ -20,6 +20,7 @@ from sailviz.recording.drawing.devices import CRAFT
 from sailviz.recording.drawing.layout import Span
 from sailviz.recording.drawing.log import Color, Picture
 from sailviz.recording.drawing.names import Names
+from sailviz.recording.drawing.near import axes_rtn, is_given
 from sailviz.recording.drawing.samples import Frame, Samples
 from sailviz.recording.drawing.shares import own_on
 from sailviz.recording.drawing.story import Story
@@ -80,7 +81,8 @@ def log_body(picture: Picture, story: Story, path: str, size: float) -> None:
     """The craft where it is, in its attitude, with its push. size : of its shape, view units; 0 for a dot."""
     samples, index, craft = story.samples, story.index, story.craft
     picture.log_pose(path, index, translation=samples.position)
-    turn = quaternion(body_axes(story.stance, samples.axes[..., 1]))
+    body = body_axes(story.stance, samples.axes[..., 1])
+    turn = quaternion(samples.axes @ axes_rtn(samples) if is_given(samples) else body)
     picture.log_pose(f"{path}/body", index, quaternion=turn)
     craft.log_shape(picture, f"{path}/body/shape", False)
     if size > 0:

@@ -21,6 +21,7 @@ from sailviz.recording.drawing.layout import ALL, Space, Span
 from sailviz.recording.drawing.log import Color, Picture, f4
 from sailviz.recording.drawing.low_flights import in_front, log_low_flights, season
 from sailviz.recording.drawing.names import Names
+from sailviz.recording.drawing.near import axes_rtn, is_given
 from sailviz.recording.drawing.orbit_plane import OrbitPlane, shell_words
 from sailviz.recording.drawing.phrases import push_words
 from sailviz.recording.drawing.planet import Planet
@@ -153,7 +154,8 @@ def log_craft(picture: Picture, story: Story, names: Names) -> None:
     count = len(samples)
     picture.log_pose("/world/rtn", index, translation=samples.position, quaternion=quaternion(samples.axes))
     ahead = np.tile([0.0, 1.0, 0.0], (count, 1))
-    picture.log_pose("/world/rtn/body", index, quaternion=quaternion(body_axes(samples.stance_rtn, ahead)))
+    body = axes_rtn(samples) if is_given(samples) else body_axes(samples.stance_rtn, ahead)
+    picture.log_pose("/world/rtn/body", index, quaternion=quaternion(body))
     tether = tether_length(story)
     if craft.tether:
         craft.log_shape(picture, "/world/rtn/body/shape", True)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sailviz.frames import body_axes, rtn, stance, to_frame, unit
+from sailviz.frames import body_axes, rotation, rtn, stance, to_frame, unit
 from sailviz.recording.drawing.samples import Samples
 
 LIGHTS = ("Sun", "light")  # names of the bodies that shine
@@ -35,7 +35,7 @@ def near_of(samples: Samples, sail: bool, sun: bool) -> Near:
     light = next((run.bodies[name] for name in LIGHTS if name in run.bodies), None)
     if sun or not sail or light is None:
         alone = sail and light is None  # an own star, at the centre
-        body = body_axes(samples.stance_rtn, np.tile([0.0, 1.0, 0.0], (len(samples), 1)))
+        body = axes_rtn(samples)
         parts = (samples.normal_rtn, body, samples.thrust_rtn, samples.velocity_rtn, samples.primer_rtn)
         shares = {name: device.acceleration_rtn for name, device in run.devices.items()}
         return Near(*parts, devices=shares, by_light=sun or alone)
@@ -43,6 +43,8 @@ def near_of(samples: Samples, sail: bool, sun: bool) -> Near:
     moving = np.any(samples.velocity_rtn, axis=1, keepdims=True)
     primer, orbital = run.environment.get("primer_direction"), rtn(run.position, run.velocity)
     body = body_axes(stance(orbital, run.attitude.normal), orbital[..., 1])
+    if is_given(samples):
+        body = rotation(run.attitude.quaternion)
     return Near(
         to_frame(axes, run.attitude.normal),
         np.swapaxes(axes, -1, -2) @ body,
@@ -52,6 +54,21 @@ def near_of(samples: Samples, sail: bool, sun: bool) -> Near:
         {name: to_frame(axes, device.acceleration) for name, device in run.devices.items()},
         by_light=True,
     )
+
+
+def is_given(samples: Samples) -> bool:
+    """Whether the craft's attitude came with the arrays, rolled about its normal in a way of its own."""
+    return samples.run.setting.resolved.get("attitude") == "given"
+
+
+def axes_rtn(samples: Samples) -> np.ndarray:
+    """The craft's own axes (n, 3, 3), columns, in the orbital frame: x as near to the direction of flight as it can be,
+    or as given."""
+    if is_given(samples):
+        orbital = rtn(samples.run.position, samples.run.velocity)
+        turned: np.ndarray = np.swapaxes(orbital, -1, -2) @ rotation(samples.run.attitude.quaternion)
+        return turned
+    return body_axes(samples.stance_rtn, np.tile([0.0, 1.0, 0.0], (len(samples), 1)))
 
 
 def light_axes(line: np.ndarray) -> np.ndarray:

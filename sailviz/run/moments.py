@@ -24,7 +24,15 @@ def run_at(run: Run, times: np.ndarray) -> Run:
             found = np.where(within.reshape((-1,) + (1,) * (found.ndim - 1)), found, np.nan)
         return found
 
-    attitude, thrust, e = run.attitude, run.thrust, run.elements
+    def thrust_at(thrust: Thrust) -> Thrust:
+        return Thrust(
+            column("acceleration_m_s2", thrust.acceleration),
+            column("acceleration_rtn_m_s2", thrust.acceleration_rtn),
+            column("magnitude_m_s2", thrust.magnitude),
+            column("on", thrust.on),
+        )
+
+    attitude, e = run.attitude, run.elements
     return replace(
         run,
         time=times,
@@ -38,12 +46,8 @@ def run_at(run: Run, times: np.ndarray) -> Run:
             column("normal", attitude.normal),
             column("quaternion", attitude.quaternion),
         ),
-        thrust=Thrust(
-            column("acceleration_m_s2", thrust.acceleration),
-            column("acceleration_rtn_m_s2", thrust.acceleration_rtn),
-            column("magnitude_m_s2", thrust.magnitude),
-            column("on", thrust.on),
-        ),
+        thrust=thrust_at(run.thrust),
+        devices={name: thrust_at(device) for name, device in run.devices.items()},
         elements=Elements(
             column("semi_major_axis_m", e.semi_major_axis),
             column("eccentricity", e.eccentricity),

@@ -10,8 +10,10 @@ import pytest
 
 from sailviz import compare, read, record, simulate
 from sailviz.recording import export
+from sailviz.recording.overlay import record_together
 from sailviz.recording.recorded_run import run_of
 from sailviz.run.arrays import Run
+from sailviz.run.moments import run_at
 
 NAMES = {"sail": "sail", "Ion drive": "ion_drive"}  # and the words in paths
 
@@ -57,6 +59,20 @@ def test_a_comparison_sees_thrust_that_went_over_to_the_other_device(flown: Run,
     assert not told.equal
     differing = {difference.quantity.partition(":")[0] for difference in told.different}
     assert differing == {"/thrust/sail", "/thrust/ion_drive"}
+
+
+def test_what_devices_did_is_kept_of_flights_that_are_recorded_together(flown: Run, tmp_path: Path) -> None:
+    """Of each its own devices; and between the rows each is read off at one time with all else."""
+    alone = replace(flown, devices={"sail": flown.devices["sail"]})
+    record_together({"both": flown, "alone": alone}, tmp_path / "a.rrd")
+    recording = read(tmp_path / "a.rrd")
+    assert "/flight/alone/thrust/ion_drive" not in recording
+    for place in ("/thrust/sail", "/flight/alone/thrust/sail"):
+        np.testing.assert_array_equal(recording[place]["magnitude_m_s2"], flown.devices["sail"].magnitude)
+    assert compare(tmp_path / "a.rrd", tmp_path / "a.rrd").equal
+    between = run_at(flown, 0.5 * (flown.time[:-1] + flown.time[1:]))
+    total = sum(device.acceleration for device in between.devices.values())
+    np.testing.assert_allclose(total, between.thrust.acceleration, rtol=1e-12, atol=1e-19)
 
 
 @pytest.mark.parametrize("ending", ["csv", "parquet", "npz"])

@@ -298,6 +298,7 @@ SCENES = {
     "deorbit/drag-only": LOW,
     "deorbit/satellite-100kg": LOW | {"propagation.integrator": "gauss-jackson"},
     "transfers/lyapunov-spiral": {},
+    "wind/held-displaced": {"expect": []},  # an ensemble
 }
 
 
@@ -314,7 +315,7 @@ def test_the_second_run_of_a_scene_imports_no_compiler(tmp_path, scene):
         "    assert not end.code, end.code\n"
         "print('numba' in sys.modules)"
     )
-    for _ in range(2):
-        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
+    sailviz.simulate(sailviz.load_scene(scene).with_values(SCENES[scene]))
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
     assert done.stdout == "False\n"

@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from sailviz.compiled import compiled, inlined, summing
+from sailviz.compiled import entry, inlined, summing
 from sailviz.propagate.ensemble.draws import (
     DRAWN,
     REPLAYED,
@@ -76,6 +76,11 @@ class Wind(NamedTuple):
     spread: float  # standard deviation of the logarithm of the slow factor on all of these
     values: np.ndarray  # (flights or 1, redraws or 1)
     response: int  # ROOT or LINEAR
+
+
+def _numbers(wind: Wind) -> Wind:
+    """A wind whose seed fits in a signed integer of 64 bits, of which the kernel takes the bits."""
+    return wind._replace(seed=(wind.seed + 2**63) % 2**64 - 2**63)
 
 
 class Ensemble(NamedTuple):
@@ -175,14 +180,16 @@ def _drive(s, lanes, c, response):
             s[FACTOR, i] = voltage_control.thrust_factor(s[VOLTAGE, i], s[PRESSURE, i], c[voltage_control.WIND], c)
 
 
-@compiled
+@entry(
+    "i i d1 d1 i1 d2 b1 b1 b1 i1 d2 i d i i d d d d1 d d2 i d1 d2 D3 D2 d2 d2 J3 D2 D2 D2 U2 I1 I1 D1 i"
+)
 def fly_block(
     first, used, start, span, substeps, strength, redraw, new_level, update, output, aim, frame,
     mu, kind, seed, memory, low_deviate, inverse_step, table, spread, values, response,
     c, reference, record, moments, low, width, counts, end, mean, s, words, begin, place, total, most,
 ):  # fmt: skip
-    """Fly the flights first .. first + used - 1 from start to end, or until `most` steps are made; returns whether that
-    was all. `Plan` and `Wind` taken apart, the row of the control law, what to subtract from the sums (outputs, SEEN),
+    """Fly the flights first .. first + used - 1 from start to end, or until `most` steps are made; returns 1 if that
+    was all, else 0. `Plan` and `Wind` taken apart, the row of the control law, what to subtract from the sums (outputs, SEEN),
     and the arrays of `Ensemble` to fill: record, moments and counts of this block, rows of end and mean of these
     flights. s, words, begin, place and total : what has to be known to go on, see `_Block`."""
     lanes = s.shape[1]
@@ -230,7 +237,7 @@ def fly_block(
                 step_in_space(s, s[FACTOR], lanes, h, g[0], g[1], g[2], g[3], g[4], g[5], mu, frame == MERIDIAN)
         if last < substeps[n]:
             place[SEGMENT], place[SUBSTEP], place[REDRAW] = n, last, k
-            return False
+            return 0
         place[SUBSTEP] = 0
         total[0] += span[n]
         for i in range(lanes):
@@ -241,13 +248,13 @@ def fly_block(
                 s[SUM_SATURATED, i] += span[n] if s[VOLTAGE, i] >= c[voltage_control.MAXIMUM] else 0.0
         if made >= most:
             place[SEGMENT], place[REDRAW] = n + 1, k
-            return False
+            return 0
     for i in range(used):
         for a in range(6):
             end[i, a] = s[a, i]
         for a in range(3):
             mean[i, a] = s[SUM_FACTOR + a, i] / total[0]
-    return True
+    return 1
 
 
 class _Block:
@@ -282,7 +289,7 @@ def record_flights(plan: Plan, wind: Wind, control, flights, reference=None):
     record, moments = np.empty((flights, outputs, SEEN)), np.zeros((outputs, MOMENTS))
     end, mean = np.empty((flights, 6)), np.empty((flights, 3))
     reference = blank if reference is None else reference
-    arguments = 0, flights, *plan, *wind, control, reference, record, moments, blank, blank, _NO_COUNTS, end, mean
+    arguments = 0, flights, *plan, *_numbers(wind), control, reference, record, moments, blank, blank, _NO_COUNTS, end, mean
     _Block(flights).fly(*arguments)
     return Ensemble(moments, _NO_COUNTS, blank, blank, record, end, mean)
 
@@ -309,7 +316,7 @@ def fly(plan: Plan, wind: Wind, control, reference, flights, threads=1, progress
         used = min(BLOCK, flights - first)
         moments, counts = np.zeros((outputs, MOMENTS)), shelf.get()
         part = slice(first, first + used)
-        arguments = first, used, *plan, *wind, control, reference, nothing, moments, low, width, counts
+        arguments = first, used, *plan, *_numbers(wind), control, reference, nothing, moments, low, width, counts
         _Block(used).fly(*arguments, end[part], mean[part], stop=stop)
         shelf.put(counts)
         return moments

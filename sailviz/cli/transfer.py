@@ -7,13 +7,13 @@ import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from sailviz.cli.numbers import Number
 from sailviz.cli.outputs import file_at
-from sailviz.cli.shared import BAD_INPUT, EXPECTATION_FAILED, progress_bar, tell
+from sailviz.cli.shared import BAD_INPUT, EXPECTATION_FAILED, progress_bar, say_if_compiling, tell
 from sailviz.cli.transfer_in_words import summary, words
 from sailviz.constants import AU, DAY
 from sailviz.errors import OutputError
@@ -105,10 +105,9 @@ def transfer(
         _agree(target, radius_au, inclination_deg, orbits, date, window, sails, as_table, output)
         if output is not None and output != "-":
             file_at(output, "scene")
-        from sailviz.design.minimum_time import costates
         from sailviz.transfers import find, place, scene_of
 
-        _say_if_compiling(costates.propagate_batch, quiet or as_json)
+        say_if_compiling(quiet or as_json)
         start = place(origin)
         end = _aim(target, radius_au, inclination_deg)
         if as_table:
@@ -188,13 +187,6 @@ def _window(date: str, days: float) -> tuple[np.datetime64, np.datetime64]:
 
     first = _first(date)
     return first, first + np.timedelta64(round(days * DAY), "s")
-
-
-def _say_if_compiling(compiled: Callable[..., Any], quiet: bool) -> None:
-    from sailviz.compiled import is_compiled
-
-    if not quiet and not is_compiled(compiled):
-        click.echo("Compiling the search for this machine: once, about a minute.", err=True)
 
 
 @contextmanager

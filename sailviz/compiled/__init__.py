@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from sailviz.compiled.decorators import called as called
     from sailviz.compiled.decorators import compiled as compiled
     from sailviz.compiled.decorators import inlined as inlined
-    from sailviz.compiled.decorators import is_compiled as is_compiled
     from sailviz.compiled.decorators import late as late
     from sailviz.compiled.decorators import summing as summing
     from sailviz.compiled.entries import Entry as Entry
@@ -45,7 +44,6 @@ _HOMES = {
     "called": "decorators",
     "compiled": "decorators",
     "inlined": "decorators",
-    "is_compiled": "decorators",
     "late": "decorators",
     "summing": "decorators",
     "Entry": "entries",

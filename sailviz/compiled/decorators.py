@@ -139,16 +139,3 @@ def late(module: str, name: str, *arguments: Any) -> Late:
         return made
 
     return Late(make)
-
-
-def is_compiled(function: Any) -> bool:
-    """Whether the machine code of an `entry` or a `compiled` function is in memory or on disk already. A guess: it only
-    decides whether a person is told to wait."""
-    if not isinstance(function, Late):
-        return bool(function.is_compiled())
-    if function.made.signatures:
-        return True
-    try:
-        return bool(function.made._cache._cache_file._load_index())
-    except (AttributeError, OSError):  # no cache, or another numba
-        return False

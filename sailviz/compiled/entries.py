@@ -72,13 +72,6 @@ class Entry:
     def _numba_type_(self) -> Any:
         return self.kernel._numba_type_
 
-    def is_compiled(self) -> bool:
-        """Whether its machine code is in memory or, as it seems, on disk."""
-        try:
-            return "native" in self.__dict__ or machine_code.is_kept(self.py_func)
-        except CannotLoadError:
-            return False
-
     def _compiled(self) -> MachineCode | None:
         from sailviz.compiled.compiling import compile_native
         from sailviz.compiled.unpacking import unpacking

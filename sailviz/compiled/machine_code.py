@@ -116,11 +116,6 @@ def kept(function: Callable[..., Any]) -> MachineCode | None:
     return None
 
 
-def is_kept(function: Callable[..., Any]) -> bool:
-    """Whether a file is there, whatever is in it."""
-    return any(file.is_file() for file in _files(function))
-
-
 def keep(function: Callable[..., Any], made: MachineCode) -> None:
     """Write machine code where it can be written, whole or not at all."""
     head = json.dumps({"name": made.name, "needs": made.needs}).encode()

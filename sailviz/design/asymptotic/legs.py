@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.compiled import called, compiled, inlined
+from sailviz.compiled import called, entry, inlined
 from sailviz.design.asymptotic.integrals import (
     A_2,
     A_M,
@@ -210,21 +210,31 @@ def _plain(q1, q2, q3, f1, f2, f3, theta, theta1, n, eps_r, eps_t, clock):
 
 
 def march(q, theta0, theta, leg, n, eps_r, eps_t, clock, scheme, loss, out, time, mass):
-    """(status, angle of a breakdown, legs) of `march_compiled` from the start q (3,), in pieces between which Ctrl-C is
+    """(status, angle of a breakdown, legs) of `_march` from the start q (3,), in pieces between which Ctrl-C is
     heard."""
     reached, done = np.array([*q, 0.0, 1.0, theta0], dtype=float), np.zeros(2, np.int64)
+    place = np.empty(1)
     while True:
-        status, place = march_compiled(
-            reached, done, theta0, theta, leg, n, eps_r, eps_t, clock, scheme, loss, out, time, mass, AT_ONCE
+        status = march_compiled(
+            reached, done, place, theta0, theta, leg, n, eps_r, eps_t, clock, scheme, loss, out, time, mass, AT_ONCE
         )
         if status != PAUSED:
-            return status, place, int(done[0])
+            return status, float(place[0]), int(done[0])
 
 
-@compiled
+@entry("D1 I1 D1 d d1 d i d d i i d D2 D1 D1 i")
 def march_compiled(
-    reached, done, theta0, theta, leg, n, eps_r, eps_t, clock, scheme, loss, out, time, mass, most
+    reached, done, place, theta0, theta, leg, n, eps_r, eps_t, clock, scheme, loss, out, time, mass, most
 ):  # fmt: skip
+    """`_march`, the angle of a breakdown into place (1,)."""
+    status, place[0] = _march(
+        reached, done, theta0, theta, leg, n, eps_r, eps_t, clock, scheme, loss, out, time, mass, most
+    )
+    return status
+
+
+@called
+def _march(reached, done, theta0, theta, leg, n, eps_r, eps_t, clock, scheme, loss, out, time, mass, most):
     """Legs of fixed length over outputs that lie in one direction. Returns (status, angle of a breakdown), PAUSED
     after most legs and outputs.
 
@@ -307,18 +317,29 @@ def march_adaptive(q, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, sch
     """As `march`, with legs chosen by comparing one leg with two halves; returns (status, place, accepted legs,
     trials)."""
     reached, done = np.array([*q, 0.0, theta0, cap], dtype=float), np.zeros(3, np.int64)
+    place = np.empty(1)
     while True:
-        status, place = march_adaptive_compiled(
-            reached, done, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, scheme, out, time, AT_ONCE // 5
-        )
+        status = march_adaptive_compiled(
+            reached, done, place, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, scheme, out, time,
+            AT_ONCE // 5,
+        )  # fmt: skip
         if status != PAUSED:
-            return status, place, int(done[0]), int(done[2])
+            return status, float(place[0]), int(done[0]), int(done[2])
 
 
-@compiled
+@entry("D1 I1 D1 d d1 d d i d d i i D2 D1 i")
 def march_adaptive_compiled(
-    reached, done, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, scheme, out, time, most
+    reached, done, place, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, scheme, out, time, most
 ):  # fmt: skip
+    """`_march_adaptive`, the angle of a breakdown into place (1,)."""
+    status, place[0] = _march_adaptive(
+        reached, done, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, scheme, out, time, most
+    )
+    return status
+
+
+@called
+def _march_adaptive(reached, done, theta0, theta, tolerance, cap, n, eps_r, eps_t, clock, scheme, out, time, most):
     """`march_adaptive` from what is reached (6,), q, time, angle and length of leg, and done (3,), legs, outputs and
     trials, on.
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sailviz.compiled import compiled
+from sailviz.compiled import entry
 from sailviz.design.minimum_time import costates
 from sailviz.design.minimum_time.state_costate import LRX, LRY, LRZ, LVX, LVY, LVZ, OWN, VX, VY, VZ, Sail, X, Y, Z
 from sailviz.steering.optimal import full_thrust, steer
@@ -159,10 +159,9 @@ def fly(problem: PlanarProblem, unknowns: np.ndarray, tolerance: float, smoothin
     return costates.fly_all(problem.starts(unknowns), spans, problem.sail, tolerance=tolerance, smoothing=smoothing)
 
 
-@compiled
-def hamiltonians(states, kind, p):
-    """H of states and costates (n, 12) with the sail steered optimally."""
-    out = np.empty(len(states))
+@entry("d2 i d1 D1")
+def hamiltonians_compiled(states, kind, p, out):
+    """`hamiltonians` into out (n,)."""
     for i in range(len(states)):
         y = states[i]
         r2 = y[X] * y[X] + y[Y] * y[Y] + y[Z] * y[Z]
@@ -174,4 +173,11 @@ def hamiltonians(states, kind, p):
         h = steer(kind, p, OWN, c, s, 0.0)[2]
         thrust, _ = full_thrust(kind, p, OWN, r, 1.0)
         out[i] = y[LRX] * y[VX] + y[LRY] * y[VY] + y[LRZ] * y[VZ] - along / r2 + thrust * size * h
+    return 0
+
+
+def hamiltonians(states: np.ndarray, sail: Sail) -> np.ndarray:
+    """H (n,) of states and costates (n, 12) with the sail steered optimally."""
+    out = np.empty(len(states))
+    hamiltonians_compiled(np.ascontiguousarray(states, dtype=float), sail.kind, sail.parameters, out)
     return out

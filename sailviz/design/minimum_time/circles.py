@@ -162,7 +162,7 @@ def _share(report: Progress, words: str, share: float) -> None:
 
 def _is_fastest(flight: PlanarProblem, unknowns: np.ndarray) -> bool:
     """Whether an extremal of unknowns (k,) is a fastest flight rather than a slowest one: H > 0."""
-    return bool(hamiltonians(flight.starts(unknowns[None]), flight.sail.kind, flight.sail.parameters)[0] > 0)
+    return bool(hamiltonians(flight.starts(unknowns[None]), flight.sail)[0] > 0)
 
 
 def _flight_time(device: Film | str, sail: Sail, ratio: float) -> float:

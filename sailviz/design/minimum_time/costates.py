@@ -8,11 +8,12 @@ land there, found to rounding.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from sailviz.compiled import called, compiled
+from sailviz.compiled import called, entry
 from sailviz.design.minimum_time.state_costate import LRX, LVX, SIZE, VX, Sail, right_hand_side, scales
 from sailviz.propagate import dop853_coefficients
 
@@ -21,6 +22,9 @@ REASONS = ("", "the steps became too small", "it took too many steps")
 MOST_STEPS = 20_000
 AT_ONCE = 16  # flights in one piece of compiled work, which hears no Ctrl-C: milliseconds, 0.5 s at the very most
 MOST_SWITCHES = 1024
+STATUS, STEPS, SWITCHES = range(3)  # of `Flights.counts`
+TIME, H, DRIFT = range(3)  # of `Flights.numbers`
+WORK = 27  # rows of twelve: 16 stages, 8 coefficients, three states
 SAFETY, SHRINK_MOST, GROW_MOST = 0.9, 0.333, 6.0  # Hairer's values
 
 
@@ -128,18 +132,20 @@ def _up_to_switch(y, kind, p, eps, h, k, w, new, before, after, span):
     return error, after, high
 
 
-@compiled
-def propagate_compiled(start, span, kind, p, eps, tolerance, t_out, out, switches, end):
-    """`propagate` without its arrays made: out (n, 12), switches (MOST_SWITCHES,), end (12,) are filled.
+@called
+def _propagate(start, span, kind, p, eps, tolerance, t_out, out, switches, end, work):
+    """`propagate` without its arrays made: out (n, 12), switches (k,), end (12,) are filled; work (WORK, 12).
 
     Returns (status, time reached, steps, number of switches, H at the start, largest |H - H(0)|).
     """
-    k = np.empty((16, SIZE))
-    w, y, new, m = np.empty(SIZE), start.copy(), np.empty(SIZE), np.empty((8, SIZE))
+    k, m, w, y, new = work[:16], work[16:24], work[24], work[25], work[26]
+    for j in range(SIZE):
+        y[j] = start[j]
     support, hamiltonian = right_hand_side(y, kind, p, eps, k[0])
     drift, t, row, steps, found = 0.0, 0.0, 0, 0, 0
     while row < len(t_out) and t_out[row] <= 0.0:
-        out[row, :] = start
+        for j in range(SIZE):
+            out[row, j] = start[j]
         row += 1
     r, v, _, _ = scales(y)
     wish = min(3.0 * tolerance**0.125 * r / v, span)
@@ -195,16 +201,53 @@ def propagate_compiled(start, span, kind, p, eps, tolerance, t_out, out, switche
     return status, t, steps, found, hamiltonian, drift
 
 
-@compiled
-def propagate_batch(starts, spans, kind, p, eps, tolerance, ends, status):
-    """Ends (n, 12) and status (n,) of many flights from starts (n, 12) over spans (n,); a failed one ends in NaN."""
-    none, rows, switches = np.empty(0), np.empty((0, SIZE)), np.empty(0)
+@entry("d2 d1 i d1 d d d1 D3 D2 D2 I2 D2 D2")
+def propagate_compiled(starts, spans, kind, p, eps, tolerance, t_out, rows, switches, ends, counts, numbers, work):
+    """Flights from starts (n, 12) over spans (n,), each with the same times t_out (m,): rows (n, m, 12), switches
+    (n, k), ends (n, 12), counts (n, 3) and numbers (n, 3) as in `Flights` are filled. work : (WORK, 12)."""
     for i in range(len(spans)):
-        status[i], _, _, _, _, _ = propagate_compiled(
-            starts[i], spans[i], kind, p, eps, tolerance, none, rows, switches, ends[i]
+        counts[i, STATUS], numbers[i, TIME], counts[i, STEPS], counts[i, SWITCHES], numbers[i, H], numbers[i, DRIFT] = (
+            _propagate(starts[i], spans[i], kind, p, eps, tolerance, t_out, rows[i], switches[i], ends[i], work)
         )
-        if status[i] != DONE:
-            ends[i, :] = np.nan
+    return 0
+
+
+class Flights(NamedTuple):
+    """Many flights: rows (n, m, 12) at the times asked for, NaN where they were not reached, ends (n, 12), switches
+    (n, k) times, counts (n, 3) of STATUS, STEPS, SWITCHES and numbers (n, 3), the TIME reached, H at the start and
+    DRIFT, the largest |H - H(0)|."""
+
+    rows: np.ndarray
+    ends: np.ndarray
+    switches: np.ndarray
+    counts: np.ndarray
+    numbers: np.ndarray
+
+
+def fly_dense(
+    starts: np.ndarray,
+    spans: np.ndarray,
+    sail: Sail,
+    times: np.ndarray,
+    tolerance: float,
+    smoothing: float,
+    switches: int = 0,
+) -> Flights:
+    """Flights from starts (n, 12) over spans (n,), seen at times (m,), float64 arrays in C order; so many switches of
+    each are kept."""
+    n = len(spans)
+    flown = Flights(
+        np.full((n, len(times), SIZE), np.nan),
+        np.empty((n, SIZE)),
+        np.empty((n, switches)),
+        np.empty((n, 3), dtype=np.int64),
+        np.empty((n, 3)),
+    )
+    propagate_compiled(
+        starts, spans, sail.kind, sail.parameters, smoothing, tolerance, times,
+        flown.rows, flown.switches, flown.ends, flown.counts, flown.numbers, np.empty((WORK, SIZE)),
+    )  # fmt: skip
+    return flown
 
 
 @dataclass(frozen=True)
@@ -241,14 +284,11 @@ def propagate(
     times = np.ascontiguousarray(times, dtype=float)
     if len(times) and not (np.all(np.diff(times) >= 0) and times[0] >= 0 and times[-1] <= span):
         raise ValueError("the times asked for must increase from 0 to the span at most")
-    rows, switches, end = np.full((len(times), SIZE), np.nan), np.empty(MOST_SWITCHES), np.empty(SIZE)
-    status, time, steps, found, hamiltonian, drift = propagate_compiled(
-        np.array(start, dtype=float), float(span), sail.kind, sail.parameters, float(smoothing), float(tolerance),
-        times, rows, switches, end,
-    )  # fmt: skip
-    return Flight(
-        time, end, rows, switches[: min(found, MOST_SWITCHES)].copy(), hamiltonian, drift, steps, REASONS[status]
-    )
+    starts = np.array(start, dtype=float).reshape(1, SIZE)
+    flown = fly_dense(starts, np.array([span], dtype=float), sail, times, tolerance, smoothing, MOST_SWITCHES)
+    (status, steps, found), (time, hamiltonian, drift) = flown.counts[0].tolist(), flown.numbers[0].tolist()
+    switches = flown.switches[0, : min(found, MOST_SWITCHES)].copy()
+    return Flight(time, flown.ends[0], flown.rows[0], switches, hamiltonian, drift, steps, REASONS[status])
 
 
 def fly_all(
@@ -256,9 +296,9 @@ def fly_all(
 ) -> np.ndarray:
     """Ends (n, 12) of n flights from starts (n, 12) over spans (n,); NaN where one fails. Units as in `propagate`."""
     starts, spans = np.ascontiguousarray(starts, dtype=float), np.ascontiguousarray(spans, dtype=float)
-    ends, status = np.empty_like(starts), np.empty(len(spans), dtype=np.int64)
-    numbers = float(smoothing), float(tolerance)
+    ends, none = np.empty_like(starts), np.empty(0)
     for first in range(0, len(spans), AT_ONCE):
         part = slice(first, first + AT_ONCE)
-        propagate_batch(starts[part], spans[part], sail.kind, sail.parameters, *numbers, ends[part], status[part])
+        flown = fly_dense(starts[part], spans[part], sail, none, tolerance, smoothing)
+        ends[part] = np.where(flown.counts[:, STATUS, None] == DONE, flown.ends, np.nan)
     return ends

@@ -208,7 +208,7 @@ class _Flown(NamedTuple):
 def _flown(flight: PlanarProblem, extremal: Extremal) -> _Flown:
     sail, span = flight.sail, extremal.time
     start = flight.starts(extremal.unknowns[None])
-    start[:, COSTATES] /= hamiltonians(start, sail.kind, sail.parameters)[0]
+    start[:, COSTATES] /= hamiltonians(start, sail)[0]
     path = propagate(start[0], span, sail, times=np.linspace(0.0, span, int(40 * span) + 200))
     r, azimuth, _, _ = polar(path.rows)
     angle = np.unwrap(azimuth)

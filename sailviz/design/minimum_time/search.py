@@ -19,11 +19,10 @@ from typing import TypeVar
 
 import numpy as np
 
-from sailviz.compiled import compiled
 from sailviz.design.minimum_time import shooting
 from sailviz.design.minimum_time.boundary_conditions import ANOMALY, DIRECTION, SPAN, PlanarProblem
-from sailviz.design.minimum_time.costates import propagate_compiled
-from sailviz.design.minimum_time.state_costate import SIZE, VX, VY, X, Y
+from sailviz.design.minimum_time.costates import STEPS, fly_dense
+from sailviz.design.minimum_time.state_costate import VX, VY, Sail, X, Y
 from sailviz.propulsion.solar_sail import Film
 from sailviz.steering.optimal import optimal_pitch
 
@@ -65,39 +64,48 @@ class Search:
     nearest: np.ndarray
 
 
-@compiled
-def screen(starts, span, samples, kind, p, eps, tolerance, target, miss, when):
+def screen(
+    starts: np.ndarray,
+    span: float,
+    samples: int,
+    sail: Sail,
+    smoothing: float,
+    tolerance: float,
+    target: tuple[float, float, float],
+) -> tuple[np.ndarray, np.ndarray]:
     """Nearest approach of flights from starts (n, 12) to a planar orbit: miss (n,) in semi-latus rectum and
-    eccentricity vector, when (n,) the time of it, looked for at so many samples of the span.
+    eccentricity vector, time (n,) of it, looked for at so many samples of the span.
 
     Flown in pieces, so that one that dives into the Sun is given up before it costs thousands of steps.
     """
     pieces = int(span / PIECE) + 1
     each = max(2, samples // pieces)
     stretch = span / pieces
-    times, rows = np.linspace(0.0, stretch, each + 1), np.empty((each + 1, SIZE))
-    switches, y, end = np.empty(0), np.empty(SIZE), np.empty(SIZE)
-    p_wanted, ex_wanted, ey_wanted = target[0], target[1], target[2]
-    for i in range(len(starts)):
-        best, at = np.inf, span
-        y[:] = starts[i]
-        for piece in range(pieces):
-            rows[:, X] = np.nan
-            _, _, steps, _, _, _ = propagate_compiled(y, stretch, kind, p, eps, tolerance, times, rows, switches, end)
-            for k in range(1, each + 1):
-                px, py, vx, vy = rows[k, X], rows[k, Y], rows[k, VX], rows[k, VY]
-                r = np.sqrt(px * px + py * py)
-                h = px * vy - py * vx
-                ex, ey = vy * h - px / r - ex_wanted, -vx * h - py / r - ey_wanted
-                size = h * h / p_wanted - 1.0
-                m = size * size + ex * ex + ey * ey
-                if m < best:
-                    best, at = m, piece * stretch + times[k]
-            near = end[X] * end[X] + end[Y] * end[Y]
-            if steps > MOST_STEPS_OF_A_PIECE or not (near > DIVE * DIVE):
-                break
-            y[:] = end
-        miss[i], when[i] = np.sqrt(best), at
+    times = np.linspace(0.0, stretch, each + 1)
+    p_wanted, ex_wanted, ey_wanted = target
+    best, when = np.full(len(starts), np.inf), np.full(len(starts), span)
+    flying, y = np.arange(len(starts)), starts
+    for piece in range(pieces):
+        flown = fly_dense(y, np.full(len(flying), stretch), sail, times, tolerance, smoothing)
+        px, py, vx, vy = (flown.rows[:, 1:, place] for place in (X, Y, VX, VY))
+        with np.errstate(all="ignore"):
+            r = np.sqrt(px * px + py * py)
+            h = px * vy - py * vx
+            ex, ey = vy * h - px / r - ex_wanted, -vx * h - py / r - ey_wanted
+            size = h * h / p_wanted - 1.0
+            miss = size * size + ex * ex + ey * ey
+            near = flown.ends[:, X] ** 2 + flown.ends[:, Y] ** 2
+        miss[~(miss < np.inf)] = np.inf  # a row that was not reached
+        nearest = np.argmin(miss, axis=1)
+        least = miss[np.arange(len(flying)), nearest]
+        better = least < best[flying]
+        best[flying[better]] = least[better]
+        when[flying[better]] = piece * stretch + times[1 + nearest[better]]
+        on = (flown.counts[:, STEPS] <= MOST_STEPS_OF_A_PIECE) & (near > DIVE * DIVE)
+        flying, y = flying[on], flown.ends[on]
+        if not len(flying):
+            break
+    return np.sqrt(best), when
 
 
 def sequence(n: int, dimensions: int) -> np.ndarray:
@@ -157,9 +165,7 @@ def _screened(problem, unknowns, span, smoothing, progress=None):
     sail, target = problem.sail, problem.target
 
     def part(places):
-        miss, when = np.empty(len(places)), np.empty(len(places))
-        screen(starts[places], span, samples, sail.kind, sail.parameters, smoothing, ROUGH, target, miss, when)
-        return miss, when
+        return screen(starts[places], span, samples, sail, smoothing, ROUGH, target)
 
     parts = max(16, -(-len(unknowns) // MOST_AT_ONCE))
     found = in_threads(part, np.array_split(np.arange(len(unknowns)), parts), progress)

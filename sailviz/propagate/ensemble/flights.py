@@ -180,17 +180,15 @@ def _drive(s, lanes, c, response):
             s[FACTOR, i] = voltage_control.thrust_factor(s[VOLTAGE, i], s[PRESSURE, i], c[voltage_control.WIND], c)
 
 
-@entry(
-    "i i d1 d1 i1 d2 b1 b1 b1 i1 d2 i d i i d d d d1 d d2 i d1 d2 D3 D2 d2 d2 J3 D2 D2 D2 U2 I1 I1 D1 i"
-)
+@entry("i i d1 d1 i1 d2 b1 b1 b1 i1 d2 i d i i d d d d1 d d2 i d1 d2 D3 D2 d2 d2 J3 D2 D2 D2 U2 I1 I1 D1 i")
 def fly_block(
     first, used, start, span, substeps, strength, redraw, new_level, update, output, aim, frame,
     mu, kind, seed, memory, low_deviate, inverse_step, table, spread, values, response,
     c, reference, record, moments, low, width, counts, end, mean, s, words, begin, place, total, most,
 ):  # fmt: skip
     """Fly the flights first .. first + used - 1 from start to end, or until `most` steps are made; returns 1 if that
-    was all, else 0. `Plan` and `Wind` taken apart, the row of the control law, what to subtract from the sums (outputs, SEEN),
-    and the arrays of `Ensemble` to fill: record, moments and counts of this block, rows of end and mean of these
+    was all, else 0. `Plan` and `Wind` taken apart, the row of the control law, what to subtract from the sums (outputs,
+    SEEN), and the arrays of `Ensemble` to fill: record, moments and counts of this block, rows of end and mean of these
     flights. s, words, begin, place and total : what has to be known to go on, see `_Block`."""
     lanes = s.shape[1]
     # a tuple: numbers in an array would be read again for every lane, in case that writing to `s` had changed them
@@ -289,7 +287,21 @@ def record_flights(plan: Plan, wind: Wind, control, flights, reference=None):
     record, moments = np.empty((flights, outputs, SEEN)), np.zeros((outputs, MOMENTS))
     end, mean = np.empty((flights, 6)), np.empty((flights, 3))
     reference = blank if reference is None else reference
-    arguments = 0, flights, *plan, *_numbers(wind), control, reference, record, moments, blank, blank, _NO_COUNTS, end, mean
+    arguments = (
+        0,
+        flights,
+        *plan,
+        *_numbers(wind),
+        control,
+        reference,
+        record,
+        moments,
+        blank,
+        blank,
+        _NO_COUNTS,
+        end,
+        mean,
+    )
     _Block(flights).fly(*arguments)
     return Ensemble(moments, _NO_COUNTS, blank, blank, record, end, mean)
 

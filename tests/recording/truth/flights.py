@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import sailviz
+from sailviz import frames
 from sailviz.run.from_arrays import trajectory
 
 from .facts import MADE_UP, Truth
@@ -404,6 +405,18 @@ def to_the_moon():
     )
 
 
+def quaternions() -> sailviz.Run:
+    """Arrays with an attitude of their own, rolled about the normal."""
+    angle = np.linspace(0.0, 1.5, 25)
+    place = AU * np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1)
+    speed = np.sqrt(MU_SUN / AU) * np.stack([-np.sin(angle), np.cos(angle), 0 * angle], 1)
+    axes = frames.body_axes(frames.unit(place + np.array([0.0, 0.0, 0.4 * AU])), np.tile([0.2, 0.4, 0.9], (25, 1)))
+    return trajectory(
+        angle * np.sqrt(AU**3 / MU_SUN), place, speed, attitude=frames.quaternion(axes), scalar="last",
+        direction="body_to_world", thrust=3e-4 * axes[..., 2],
+    )  # fmt: skip
+
+
 def competition() -> sailviz.Run:
     """A flyby of a planet of GTOC13, and a sail after it that breaks a rule: it ends far from where it says."""
     from sailviz.checks.gtoc13 import judge, sail
@@ -466,6 +479,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "chaos": scene("wind/gpc-spiral", **SMALL),
     "wind": scene("wind/voltage-limits", **SMALL),
     "competition": competition,
+    "quaternions": quaternions,
     "held": scene("wind/held-displaced", propagation__outputs=61),
     "light": scene("wind/flickering-sun", **SMALL),
     "round a planet": round_a_planet,

@@ -186,7 +186,8 @@ def _long_steps(time: np.ndarray, given: Columns, mu: float) -> tuple[tuple[floa
 
 def _run(path: str | Path, time: np.ndarray, position: np.ndarray, velocity: np.ndarray, **options: object) -> Run:
     try:
-        return trajectory(time, position, velocity, family="flights", **options)  # type: ignore[arg-type] # one by one
+        about = f"A flight of {len(time):,} rows, shown as they are in its file: nothing was propagated."
+        return trajectory(time, position, velocity, family="flights", about=about, **options)  # type: ignore[arg-type]
     except TrajectoryError as error:
         words = "; ".join(line.strip() for line in str(error).splitlines() if line.strip())
         raise RecordingError(f"{path}: {words}") from None

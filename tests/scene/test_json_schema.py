@@ -35,7 +35,7 @@ def test_json_schema_accepts_shipped_scenes_and_rejects_a_misspelt_key(name):
     for where in ("start", "device", "propagation"):
         bad = copy.deepcopy(good)
         table = bad[where][0] if isinstance(bad[where], list) else bad[where]
-        key = next(key for key in table if key != "kind")
+        key = next((key for key in table if key != "kind"), "kind")
         table[key + "x"] = table.pop(key)
         assert not VALIDATOR.is_valid(bad)
 

@@ -23,6 +23,16 @@ class Body:
 
 
 @dataclass(frozen=True)
+class CraftPart:
+    """A part of a craft of its own shape, in body axes. corners (n, 3) m; faces (k, 3), fronts outwards."""
+
+    name: str
+    corners: np.ndarray
+    faces: np.ndarray
+    film: bool  # seen from both sides, its front the sunward one
+
+
+@dataclass(frozen=True)
 class Craft:
     """What flies, for its mesh and its labels. Lengths in m; None where the scene does not say."""
 
@@ -32,6 +42,7 @@ class Craft:
     tethers: int | None = None
     tether_length: float | None = None
     spin: str = ""  # of a tether that spins: the plane in which, "along-track" or "across-track"
+    parts: tuple[CraftPart, ...] = field(default=(), compare=False, repr=False)  # of a sail with a shape, its mesh
 
 
 @dataclass(frozen=True)

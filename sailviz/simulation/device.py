@@ -7,7 +7,7 @@ recording/drawing/devices.py.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
@@ -19,7 +19,7 @@ from sailviz.propagate import dynamics, events
 from sailviz.propagate import low_orbit_callback as low_orbit
 from sailviz.propulsion import electric_sail, plasma_brake, solar_sail, thruster
 from sailviz.propulsion.solar_sail import FILMS, Film
-from sailviz.run.arrays import Body, Craft
+from sailviz.run.arrays import Body, Craft, CraftPart
 from sailviz.run.devices import LABELS
 from sailviz.scene.device import Device as DeviceSection
 from sailviz.scene.device import ElectricSail, NoDevice, PlasmaBrake, SolarSail, Thruster
@@ -292,4 +292,11 @@ def craft(scene: Scene) -> Craft:
     record = device_of(scene)
     spin = steering_of(scene.steering).tether(scene.steering).spin
     labels = [record.label, *(DEVICES[type(device)].label for device in scene.beside)]
-    return Craft(scene.device.kind, " + ".join(dict.fromkeys(labels)), spin=spin, **record.size(scene.device))
+    found = Craft(scene.device.kind, " + ".join(dict.fromkeys(labels)), spin=spin, **record.size(scene.device))
+    if not isinstance(scene.device, SolarSail) or scene.device.shape is None:
+        return found
+    from sailviz.simulation.sail_shape import sail_shape
+
+    shape = sail_shape(scene).shape
+    parts = (CraftPart(part.name, part.mesh.vertices, part.mesh.faces, part.is_film) for part in shape.parts)
+    return replace(found, side=shape.size, parts=tuple(parts))

@@ -169,6 +169,37 @@ def test_a_file_that_lies_is_told_when_the_scene_is_flown(tmp_path):
         simulate(load_scene(tmp_path / "a.toml"))
 
 
+def test_what_is_drawn_is_what_is_pushed(tmp_path):
+    """The facets of the close-up times the size that they stand for are those of the shape; lit from the front."""
+    from rerun.chunk import RrdReader
+
+    from sailviz import record
+
+    shape = square(cone_deg=5, sag=0.03, bus={"size_m": [1, 1, 1], "centre_m": [0, 0, -1]})
+    whole = load_scene(scene({"mass_kg": 14, "back": "same", "shape": shape}, 5, 20))
+    record(simulate(whole), tmp_path / "a.rrd")
+    pushed = {part.name: part.mesh for part in sail_shape(whole).shape.parts}
+    drawn: dict[str, list] = {}
+    for chunk in RrdReader(str(tmp_path / "a.rrd")).stream():
+        batch = chunk.to_record_batch()
+        name = chunk.entity_path.rsplit("/", 1)[-1]
+        if "Mesh3D:vertex_positions" in batch.schema.names:
+            drawn.setdefault(name, []).append(batch.column("Mesh3D:vertex_positions").to_pylist()[0])
+    size = sail_shape(whole).shape.size
+    assert not {"booms", "vanes"} & set(drawn)
+    for name, part in (("film_lit", "film"), ("film_dark", "film"), ("bus", "bus")):
+        assert drawn[name], name
+        for corners in drawn[name]:
+            found, whole_part = size * np.array(corners), pushed[part].vertices
+            if part == "film":
+                np.testing.assert_allclose(found, whole_part, rtol=0, atol=1e-6 * size)
+            for seen, meant in (
+                (found.min(axis=0), whole_part.min(axis=0)),
+                (found.max(axis=0), whole_part.max(axis=0)),
+            ):
+                np.testing.assert_allclose(seen, meant, rtol=0, atol=1e-6 * size)
+
+
 def test_scenes_without_a_shape_say_nothing_of_it():
     values = load_scene(scene({"mass_kg": 14, "area_m2": 80.0})).resolved()["device"]
     assert not {"shape", "back", "roll"} & set(values)

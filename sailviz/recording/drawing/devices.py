@@ -6,6 +6,9 @@ thrust.
 
 from __future__ import annotations
 
+from dataclasses import replace
+from functools import partial
+
 import numpy as np
 import rerun as rr
 
@@ -13,8 +16,9 @@ from sailviz.recording.drawing import style
 from sailviz.recording.drawing.craft import CraftDrawing
 from sailviz.recording.drawing.log import Picture, f4
 from sailviz.recording.drawing.style import points
+from sailviz.run.arrays import Craft, CraftPart
 from sailviz.shapes import sails, tethers
-from sailviz.shapes.primitives import circle, disc
+from sailviz.shapes.primitives import Trimesh, circle, disc, flat_sided, joined
 
 
 def log_square_sail(picture: Picture, path: str, near: bool) -> None:
@@ -29,6 +33,27 @@ def log_square_sail(picture: Picture, path: str, near: bool) -> None:
         lifts = [[0, 0, side * 0.004] for side in (-1, 1)]  # off the film, or the lines tear
         strips = [seam + lift for seam in sails.seams() for lift in lifts]
         picture.log_lines(f"{path}/seams", strips, style.SEAM, style.WIDTH["seam"])
+
+
+def log_own_shape(parts: tuple[CraftPart, ...], size: float, picture: Picture, path: str, near: bool) -> None:
+    """The parts of a sail with a shape, its longest side drawn as 1: what is pushed is what is seen. The front of a
+    film is the lit side."""
+    for film in (True, False):
+        meshes = [Trimesh(part.corners / size, part.faces, process=False) for part in parts if part.film == film]
+        if meshes and film:
+            picture.log_mesh(f"{path}/film_lit", joined(meshes), style.FILM_LIT, side="front")
+            picture.log_mesh(f"{path}/film_dark", joined(meshes), style.FILM_DARK, side="back")
+        elif meshes:
+            picture.log_mesh(f"{path}/bus", flat_sided(joined(meshes)), style.BUS)
+
+
+def drawing_of(craft: Craft) -> CraftDrawing:
+    """How a craft is drawn: as its kind is, or, of a sail with a shape, as it is."""
+    kind = CRAFT[craft.kind]
+    if not craft.parts or craft.side is None:
+        return kind
+    own = partial(log_own_shape, craft.parts, craft.side)
+    return replace(kind, log_shape=own, stowable=("film_lit", "film_dark"), stowable_near=())
 
 
 def log_electric_sail(picture: Picture, path: str, near: bool) -> None:

@@ -19,7 +19,7 @@ from sailviz.recording.drawing.arrival_plane import arrivals_of
 from sailviz.recording.drawing.blueprint import blueprint
 from sailviz.recording.drawing.curves import Curves, words_of
 from sailviz.recording.drawing.description import WALL, about, event_line, gap_words
-from sailviz.recording.drawing.devices import CRAFT
+from sailviz.recording.drawing.devices import drawing_of
 from sailviz.recording.drawing.ensemble_plots import plots_of_ensembles
 from sailviz.recording.drawing.ensembles import log_ensembles
 from sailviz.recording.drawing.flight_curves import FlightCurves, curves_beside, log_flight_curves
@@ -58,7 +58,7 @@ class Drawing:
         self._numbers: list[np.ndarray] = []
         self._events: list[Event] = []
         self.remarks: list[str] = []  # what the rows do not tell, once the run is drawn
-        self._craft = CRAFT[setting.craft.kind]
+        self._craft = drawing_of(setting.craft)
         if overlay is not None:  # the close-up is called by the flight's name
             self._craft = replace(self._craft, close_name="")
         self._curves = Curves(picture, first, self._frame, self._craft)

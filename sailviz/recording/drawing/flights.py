@@ -16,7 +16,7 @@ from sailviz.recording.companions import Companion
 from sailviz.recording.contract import word
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.craft import Glow, log_stowing
-from sailviz.recording.drawing.devices import CRAFT
+from sailviz.recording.drawing.devices import drawing_of
 from sailviz.recording.drawing.layout import Span
 from sailviz.recording.drawing.log import Color, Picture
 from sailviz.recording.drawing.names import Names
@@ -74,7 +74,7 @@ def story_beside(companion: Companion, first: Frame) -> Story:
     picked = timelines.Picker(frame.rows, frame.most, run.setting.duration).pick(run)
     rows = np.unique(np.append(picked, len(run) - 1))
     samples = Samples.of(timelines.take(run, rows), rows, frame)
-    return Story(samples, frame, CRAFT[run.setting.craft.kind], run.events, 0.0)
+    return Story(samples, frame, drawing_of(run.setting.craft), run.events, 0.0)
 
 
 def log_body(picture: Picture, story: Story, path: str, size: float) -> None:

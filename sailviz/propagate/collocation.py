@@ -18,6 +18,8 @@ from sailviz.compiled import entry, inlined
 from sailviz.propagate.collocation_forces import fits_lanes, is_table, prepare
 from sailviz.propagate.collocation_memory import (
     CLOSEST,
+    HELD,
+    JUMPED,
     LAST_ERROR,
     LAST_STEP,
     LENGTH,
@@ -215,6 +217,8 @@ def advance_compiled(
         interval, new_factor, _ = settle(s, breaks, factors, p, t, limit, t_end, stop_x < 2.0, interval, factor)
         if new_factor != factor and varies:
             prepare(nodes, t, 0.0, new_factor, p)
+        if new_factor != factor:
+            nodes[HELD] = min(nodes[HELD], JUMPED)
         factor = new_factor
         ended = count[STATUS] != DONE
     return close_block(s, t_out, row, ended)

@@ -17,6 +17,7 @@ PARTS = 112  # of the thrust at the nodes: along r_hat and along the normal, as 
 REST = 152  # what rounding left of position, velocity and mass at the start of the step
 MIDDLE, HALF = 160, 161  # of the last step: its middle, s, half of its length, s
 HELD = 162  # how many steps are kept: 0, 1, or 2 where the last two are as long as each other
+JUMPED = 0.5  # in this place: one is kept, but the thrust has jumped at its end
 CLOSEST = 163  # m, least distance from the centre of the last step's nodes
 LAST_STEP, LAST_ERROR = 164, 165  # of the last step that was not cut: its length, s, its error over what is bearable
 SPAN, SCALE = 166, 167  # s, of the whole run; m, distance from the centre at its start

@@ -75,10 +75,10 @@ def continued(nodes, s, component):
 
 
 @inlined
-def first_guess(nodes, t, h, y, mu):
-    """Accelerations at the nodes of [t, t + h]: those of the last two steps, if they are as long, or of the last one,
-    continued; at first those of a circle."""
-    if nodes[HELD] == 2.0 and abs(h - 2.0 * nodes[HALF]) < EQUAL * h and t > nodes[MIDDLE]:
+def first_guess(nodes, t, h, y, mu, careful):
+    """Accelerations at the nodes of [t, t + h]: those of the last one, continued; on long flights those of the last
+    two, if they are as long; at first those of a circle. What two steps disagree by grows eighty million times."""
+    if careful and nodes[HELD] == 2.0 and abs(h - 2.0 * nodes[HALF]) < EQUAL * h and t > nodes[MIDDLE]:
         return following(nodes, PAST)
     if nodes[HELD] != 0.0:
         s = (t - nodes[MIDDLE] + h * node()) / nodes[HALF]
@@ -125,7 +125,7 @@ def sweep(nodes, work, t, h, enough, at_once, burns, careful, factor, p):
     careful : keep what rounding takes. Returns whether they agree, and the number of sweeps."""
     y = work[Y]
     x0, y0, z0, u0, v0, w0 = y[0], y[1], y[2], y[3], y[4], y[5]
-    fx, fy, fz = first_guess(nodes, t, h, y, p.gravity.mu)
+    fx, fy, fz = first_guess(nodes, t, h, y, p.gravity.mu, careful)
     if burns:  # as in the last step, not as in one that came to nothing, which may be no number
         store(nodes, FORCE + 24, load(nodes, BEFORE + 24))
     before, sweeps = 0.0, 0
@@ -247,7 +247,7 @@ def keep_polynomial(nodes, work, t, h, burns):
         store(nodes, BEFORE + 24, load(nodes, FORCE + 24))
         store(nodes, mass + 1, half * (a * once()))
         nodes[mass] = y[6] + half * total(a * once_left())
-    nodes[HELD] = 2.0 if nodes[HELD] != 0.0 and abs(half - nodes[HALF]) < EQUAL * half else 1.0
+    nodes[HELD] = 2.0 if nodes[HELD] >= 1.0 and abs(half - nodes[HALF]) < EQUAL * half else 1.0
     nodes[MIDDLE], nodes[HALF] = t + half, half
 
 

@@ -191,4 +191,13 @@ CATALOGUE = {
         "transfers",
         "launch_window",
     ),
+    "speed": Entry(
+        "What an error costs: sailviz and heyoka over their tolerances",
+        f"{OURS}; the least of interleaved CPU times on the machine named; points that others beat are dim; "
+        "tests/bench measures anew",
+        (14, 5.0),
+        (1, 3),
+        "speed",
+        "speed",
+    ),
 }

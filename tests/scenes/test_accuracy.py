@@ -51,6 +51,6 @@ def test_twenty_revolutions_are_within_1e_8_of_far_finer_steps(name):
     fine = replace(p, model=p.model._replace(parameters=parameters))
     exact = fly(fine, times, 1e-14, 2.0 if p.scene.body == "earth" else last / 20_000, "dop853")
     rows = min(flown.shape[1], exact.shape[1])
-    assert rows > 100
+    assert rows > 50  # a mission in phases ends with the first of them
     away = np.linalg.norm(flown[:, :rows] - exact[:, :rows], axis=0) / np.linalg.norm(exact[:, :rows], axis=0)
     assert away.max() < 1e-8

@@ -22,6 +22,7 @@ from sailviz.recording.drawing.ghosts import log_ghosts
 from sailviz.recording.drawing.influence import log_influence
 from sailviz.recording.drawing.landmarks import (
     CRAFT,
+    MARK,
     SUN,
     Landmarks,
     landmarks_of,
@@ -134,7 +135,7 @@ def log_backdrop(picture: Picture, story: Story, names: Names) -> None:
         picture.log_static("/world/center", rr.Points3D([[0, 0, 0]], radii=points(7), colors=[style.SUN]))
         if story.frame.unit_name == "au":  # a star
             below = np.array([0.0, 0.0, -2.1 * style.SUN_RADIUS * story.reach])
-            names.add("/world/names/star", body.name, style.SUN, below, SUN)
+            names.add("/world/names/star", body.name, style.SUN, below, MARK)  # nothing else says what it is
     if story.frame.sun or body.radius == 0:
         picture.log_mesh("/world/ecliptic", disc(0.06, style.DISC_RADIUS), style.ECLIPTIC, shaded=False)
         picture.log_scale("/world/ecliptic", story.reach)

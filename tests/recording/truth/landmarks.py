@@ -102,8 +102,7 @@ def passed(f, word):
 
 def star_name(f, entity):
     """The star's own name, below it."""
-    _, rows = f.picture.rows(entity, "Points3D:positions")
-    places = np.concatenate([np.reshape(row, (-1, 3)) for row in rows])
+    places = np.array([place for _, place in shown(f, entity)])
     places = places[np.isfinite(places[:, 0])]
     assert len(places)
     assert not places[:, :2].any()

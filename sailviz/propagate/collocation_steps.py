@@ -60,6 +60,7 @@ MOST_SWEEPS = 25
 SEVENTH, SIXTH = 16 / 429, 16 / 231  # what P_7 and P_6 have of s^7 and s^6, inverse
 ROUNDING = 1e-28  # of accelerations, squared, over themselves: no sweep makes it smaller
 NOISE = 1e-15  # of a coefficient over the whole, by rounding
+FAR = 20.0  # halves of a step: beyond, its polynomial of degree seven continues rounding and nothing else
 EQUAL = 1e-9  # of a step: the lengths of steps that differ by less are one
 CORRECTIONS = 1  # to first order, after each evaluation of the forces
 
@@ -80,7 +81,7 @@ def first_guess(nodes, t, h, y, mu, careful):
     two, if they are as long; at first those of a circle. What two steps disagree by grows eighty million times."""
     if careful and nodes[HELD] == 2.0 and abs(h - 2.0 * nodes[HALF]) < EQUAL * h and t > nodes[MIDDLE]:
         return following(nodes, PAST)
-    if nodes[HELD] != 0.0:
+    if nodes[HELD] != 0.0 and abs(h) < FAR * nodes[HALF]:
         s = (t - nodes[MIDDLE] + h * node()) / nodes[HALF]
         return continued(nodes, s, 0), continued(nodes, s, 1), continued(nodes, s, 2)
     r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]

@@ -108,7 +108,10 @@ def _without_equal_steps(model) -> Choice:
         return Choice(DOP853, "a function of one's own may jump")
     if steering == attitude.CALLED and not counted:
         return Choice(DOP853, "a function of one's own may jump")
-    if steering in (attitude.LOCAL, attitude.LYAPUNOV) or (steering == attitude.PRIMER and device != SOLAR_SAIL):
+    film = p.solar_sail
+    real_film = device == SOLAR_SAIL and (film.b1 != 0.0 or film.b3 != 0.0)  # which turns edge-on at once
+    switches = steering == attitude.PRIMER and (device != SOLAR_SAIL or real_film)
+    if steering in (attitude.LOCAL, attitude.LYAPUNOV) or switches:
         return Choice(DOP853, "the steering switches the thrust when it is time")
     if sail and steering in (attitude.INERTIAL, attitude.TANGENTIAL):
         return Choice(DOP853, "the sail may turn edge-on, where its force has a kink")

@@ -314,6 +314,6 @@ def test_the_second_run_of_a_scene_imports_no_compiler(tmp_path, scene):
         "print('numba' in sys.modules)"
     )
     sailviz.simulate(sailviz.load_scene(scene).with_values(SCENES[scene]))
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert done.stdout == "False\n"

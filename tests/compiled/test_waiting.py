@@ -5,6 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -95,19 +96,25 @@ def listening(monkeypatch):
     say_if_compiling(False)
 
 
+@pytest.fixture
+def importable(monkeypatch):
+    """Processes that start afresh find what they are to do in this file, and sailviz where it was found before."""
+    monkeypatch.setattr(sys, "path", [*sys.path, str(Path(__file__).parents[2])])
+
+
 @pytest.mark.parametrize("name", ["threads", "processes", "dask"])
-def test_of_several_workers_of_a_sweep_that_compile_at_the_same_time_one_says_so(name, listening, capfd):
+def test_of_several_workers_of_a_sweep_that_compile_at_the_same_time_one_says_so(name, listening, importable, capfd):
     if name == "dask":
         pytest.importorskip("distributed")
     with engines.engine(name, 2) as executor, executor or engines.processes(2) as pool:
         for done in [pool.submit(_compiles) for _ in range(2)]:
-            done.result()
+            done.result(timeout=120)
     assert capfd.readouterr().err.count("Compiling for this machine") == 1
 
 
-def test_workers_of_a_sweep_that_nobody_listens_to_say_nothing(monkeypatch, capfd):
+def test_workers_of_a_sweep_that_nobody_listens_to_say_nothing(monkeypatch, importable, capfd):
     monkeypatch.setattr(waiting, "_listening", [])
     say_if_compiling(True)
     with engines.processes(1) as pool:
-        pool.submit(_compiles).result()
+        pool.submit(_compiles).result(timeout=120)
     assert "Compiling" not in capfd.readouterr().err

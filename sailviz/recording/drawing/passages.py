@@ -18,6 +18,7 @@ KINDS: tuple[tuple[str, str, Color, int], ...] = (  # how the event begins, wher
     (VIOLATION, "/world/violations", style.FAULT, MARK),
     (FLYBY, "/world/flybys", style.FLYBY, RING),
 )
+HIGHER = (1.2, 1.8, 2.6, 3.4)  # of the rise at which other names stand over their marks
 MOST_NAMES = 40  # of one kind: more would lie on each other anyway
 
 
@@ -32,7 +33,8 @@ def log_passages(picture: Picture, story: Story, eye: np.ndarray, names: Names) 
         picture.log_static(path, rr.Points3D(f4(places), radii=points(style.MARK_DOT), colors=[color]))
         for number in named(places, 0.05 * story.reach):
             words = events[number].name.removeprefix(FLYBY)
-            names.add(f"{path}/{number}", words, color, places[number] + 0.6 * rise, rank)
+            higher = [places[number] + times * rise for times in HIGHER]  # where it starts or ends other words stand
+            names.add(f"{path}/{number}", words, color, places[number] + 0.6 * rise, rank, higher)
 
 
 def named(places: np.ndarray, apart: float) -> Sequence[int]:

@@ -102,3 +102,10 @@ def test_a_flight_that_was_not_found_is_not_written():
     nothing = circle_to_circle(AU, AU, "ideal", 1e-3)
     with pytest.raises(ValueError, match="no flight to write down"):
         transfers.scene_of(nothing)
+
+
+@pytest.mark.parametrize(("scene", "why"), [("ideal", "smooth"), ("jpl-2015", "switches the thrust")])
+def test_a_film_that_turns_edge_on_at_once_is_no_smooth_flight(scene, why):
+    """Real film stops to push at an angle at which it still would; steps that see eight places only miss that."""
+    run = sailviz.simulate(sailviz.load_scene(f"transfers/earth-venus-{scene}", {"propagation.outputs": 20}))
+    assert why in run.setting.accuracy

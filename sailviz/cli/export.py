@@ -13,15 +13,15 @@ from sailviz.cli.shared import in_one_sentence
 @click.option(
     "--to",
     "form",
-    type=click.Choice(["csv", "parquet", "npz", "oem", "aem", "spk"]),
-    help="Format; by default the ending of -o, .bsp for spk.",
+    type=click.Choice(["csv", "parquet", "npz", "oem", "aem", "spk", "ck"]),
+    help="Format; by default the ending of -o, .bsp for spk, .bc for ck.",
 )
 @click.option("-o", "--output", metavar="FILE|DIR", help="By default a file named after the recording, in this folder.")
 @click.option(
     "--entity", "entities", multiple=True, metavar="/ENTITY", help="Only this entity, e.g. /state; repeatable."
 )
-@click.option("--frame", default="", help="Frame of an OEM, AEM or SPK: EME2000, or ECLIPJ2000.")
-@click.option("--craft-id", type=int, default=-910001, show_default=True, help="NAIF id of the craft in an SPK.")
+@click.option("--frame", default="", help="Frame of an OEM, AEM, SPK or CK: EME2000, or ECLIPJ2000.")
+@click.option("--craft-id", type=int, default=-910001, show_default=True, help="NAIF id of the craft in kernels.")
 @click.option("--centre-id", type=int, help="NAIF id of the central body in an SPK; by default by its name.")
 def export(
     file: str,
@@ -32,7 +32,11 @@ def export(
     craft_id: int,
     centre_id: int | None,
 ) -> None:
-    """Write a recording as CSV, Parquet, numpy archive (npz), orbit or attitude message (oem, aem) or kernel (spk)."""
+    """Write a recording as CSV, Parquet, numpy archive (npz), orbit or attitude message (oem, aem) or kernel of SPICE.
+
+    spk holds the positions and velocities. ck holds the attitude: SPICE reads NAME.bc with the clock NAME.tsc and the
+    frame NAME.tf, which are written beside it.
+    """
     from sailviz import recording
 
     with in_one_sentence():

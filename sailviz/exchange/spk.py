@@ -16,8 +16,10 @@ import numpy as np
 
 from sailviz.errors import RecordingError
 from sailviz.exchange import daf
+from sailviz.sky.places import tdb_ahead
 
 FRAMES = {"J2000": 1, "ECLIPJ2000": 17}  # SPICE's J2000 has the axes of the ICRF
+J2000_TT = np.datetime64("2000-01-01T12:00:00", "ns")
 HERMITE, LAGRANGE = 13, 9
 WINDOWS = {HERMITE: 8, LAGRANGE: 8}  # rows that one moment is interpolated in: degree 15 and degree 7
 DIRECTORY = 100  # epochs between those that the directory repeats
@@ -55,6 +57,13 @@ def tdb_less_tt(tt: float) -> float:
     that a date means the same moment here and in SPICE."""
     anomaly = 6.239996 + 1.99096871e-7 * tt
     return 1.657e-3 * sin(anomaly + 1.671e-2 * sin(anomaly))
+
+
+def seconds_of_tdb(epoch: np.datetime64, time: np.ndarray) -> np.ndarray:
+    """s of TDB after J2000 (n,) of seconds (n,) after an epoch, UTC: those of a run are of TDB."""
+    tt = float((epoch - J2000_TT) / np.timedelta64(1, "ns")) * 1e-9 + tdb_ahead(epoch)
+    start: float = tt + tdb_less_tt(tt)
+    return start + np.asarray(time, float)
 
 
 def write_spk(

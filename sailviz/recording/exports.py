@@ -4,7 +4,8 @@ csv, parquet   one table: step, time_s, utc where there is an epoch, then entity
                second file beside it, NAME.events.csv, and each ensemble in NAME.ensemble.OWN_NAME.csv; each flight
                beside the first, on its own clock, in NAME.flight.OWN_NAME.csv
 npz            every column under its own key, e.g. state.position_m (n, 3), events.time_s, scene.identity
-oem, spk, aem  position and velocity, or the attitude (orbit_files.py); a new segment after a gap and at a jump
+oem, spk       position and velocity (orbit_files.py); a new segment after a gap and at a jump
+aem, ck        the attitude (attitude_files.py); beside a CK its clock and its frame, NAME.tsc and NAME.tf
 """
 
 from __future__ import annotations
@@ -20,11 +21,11 @@ import pyarrow as pa
 from sailviz import files
 from sailviz.errors import RecordingError
 from sailviz.recording.comparison.tables import Evidence, Source, Table, evidence, flight_of
-from sailviz.recording.orbit_files import CRAFT, ORBIT_FILES, ids_named, write_orbit
+from sailviz.recording.orbit_files import ATTITUDES, CRAFT, ORBIT_FILES, check_ids, write_orbit
 from sailviz.recording.reader import EventRow, FilePath
 
 FORMATS = ("csv", "parquet", "npz", *ORBIT_FILES)
-ENDING = {"spk": "bsp"}  # of a file, where that is not the format's word
+ENDING = {"spk": "bsp", "ck": "bc"}  # of a file, where that is not the format's word
 ENDINGS = {ending: to for to, ending in ENDING.items()}
 FEW = 5  # rows of an entity that stands on other rows than the truth, where only a part of those is wanted
 LETTERS = {"quaternion": "xyzw", "acceleration_rtn_m_s2": "rtn"}
@@ -44,8 +45,9 @@ def export(
 
     out : file or folder; without one a file named after the recording in the current folder. to : one of FORMATS, by
     default the ending of `out`; a device or a pipe takes the rows alone, with no file of events beside it. entities :
-    those wanted, all of the truth by default. frame : of an OEM or SPK, see `orbit_files`. craft_id, centre_id : NAIF's
-    of the craft and of the central body in an SPK; that of the Sun, a planet or the Moon needs no word.
+    those wanted, all of the truth by default. frame : of an OEM, AEM, SPK or CK, see `orbit_files`. craft_id : NAIF's
+    of the craft in an SPK or a CK; centre_id : of the central body in an SPK; that of the Sun, a planet or the Moon
+    needs no word.
     Raises RecordingError, in one sentence, for what cannot be read, written or said in that format.
     """
     data = evidence(source)
@@ -53,16 +55,15 @@ def export(
     wanted = tuple("/" + name.strip("/") for name in entities)
     files.check(path, "table")
     try:
-        if to != "spk" and ids_named(craft_id, centre_id):
-            raise RecordingError(f"craft and centre have NAIF ids in an SPK; {to} knows none")
+        check_ids(to, craft_id, centre_id)
         if to in ORBIT_FILES:
-            held, content = ("/attitude", "the attitude") if to == "aem" else ("/state", "position and velocity")
+            held, content = ("/attitude", "the attitude") if to in ATTITUDES else ("/state", "position and velocity")
             if wanted and wanted != (held,):
-                raise RecordingError(f"an {to.upper()} holds {content}; it takes no other entity than {held}")
-            return (write_orbit(data, path, to, frame, craft_id, centre_id),)
+                raise RecordingError(f"{ORBIT_FILES[to]} holds {content}; it takes no other entity than {held}")
+            return write_orbit(data, path, to, frame, craft_id, centre_id)
         if frame:
             raise RecordingError(
-                f"a frame is named in an OEM, AEM or SPK; {to} holds the numbers in the frame of the run"
+                f"a frame is named in an OEM, AEM, SPK or CK; {to} holds the numbers in the frame of the run"
             )
         if to == "npz":
             return (written_whole(path, lambda part: write_npz(part, arrays(data, wanted))),)

@@ -176,7 +176,7 @@ def test_what_a_kernel_cannot_say_is_refused(runs, arguments, word, tmp_path):
 
 def test_ids_belong_to_a_kernel_and_a_star_of_ones_own_needs_one(runs, tmp_path):
     run = runs.displaced(rows=30)
-    with pytest.raises(RecordingError, match="NAIF ids in an SPK; csv knows none"):
+    with pytest.raises(RecordingError, match="NAIF ids in an SPK, the craft in a CK; csv knows none"):
         export(run, tmp_path / "run.csv", craft_id=-5)
     star = {
         "title": "A star of its own",

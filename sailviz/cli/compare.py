@@ -8,6 +8,7 @@ from collections.abc import Iterable
 
 import click
 
+from sailviz.cli.flight_options import FlightOptions, body_option
 from sailviz.cli.shared import in_one_sentence
 
 DIFFERENT = 1
@@ -21,23 +22,35 @@ DIFFERENT = 1
 @click.option(
     "--on", type=click.Choice(["sim_time", "step"]), default="sim_time", show_default=True, help="Pair rows by it."
 )
+@body_option
 @click.option("--no-picture", is_flag=True, help="Compare numbers and events only.")
 @click.option("--json", "as_json", is_flag=True, help="Print what a script can read.")
 @click.option("-q", "--quiet", is_flag=True, help="Print nothing: the exit code says it.")
 def compare(
-    a: str, b: str, atol: tuple[str, ...], rtol: tuple[str, ...], on: str, no_picture: bool, as_json: bool, quiet: bool
+    a: str,
+    b: str,
+    atol: tuple[str, ...],
+    rtol: tuple[str, ...],
+    on: str,
+    body: str,
+    no_picture: bool,
+    as_json: bool,
+    quiet: bool,
 ) -> None:
-    """Compare two recordings (or tables written by export --to npz).
+    """Compare two recordings, tables written by export --to npz, or flights of others.
 
     Prints the largest difference of every quantity, where and when. Without --atol a quantity may differ by 1e-9 of its
     largest value. Exit code 0: equal, 1: different, 2: unreadable.
     """
     from sailviz import recording
+    from sailviz.recording.comparison.tables import of_run
+    from sailviz.recording.flights import is_flight
 
     with in_one_sentence():
+        said = FlightOptions(body)
+        said.check((a, b))
         found = recording.compare(
-            a,
-            b,
+            *(of_run(said.read(file), file) if body and is_flight(file) else file for file in (a, b)),
             atol=_tolerances(atol, "--atol") or None,
             rtol=_tolerances(rtol, "--rtol"),
             on=on,

@@ -30,6 +30,7 @@ COMMANDS = {  # name, which is also that of the module -> function there
     "info": "info",
     "list": "list_scenes",
     "picture": "picture",
+    "record": "record",
     "report": "report",
     "run": "run",
     "schema": "schema",

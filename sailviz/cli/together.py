@@ -9,6 +9,7 @@ from pathlib import Path
 
 import click
 
+from sailviz.cli.flight_options import NOTHING_SAID, FlightOptions
 from sailviz.cli.shared import tell
 from sailviz.errors import RecordingError
 
@@ -52,9 +53,10 @@ def check_asked_for(files: Sequence[str], together: bool | None, given: Sequence
 
 
 @contextmanager
-def recorded(files: Sequence[str]) -> Iterator[list[str]]:
-    """The files, and in the place of each flight of others a recording of it that is gone afterwards."""
-    from sailviz.recording.flights import is_flight, read_flight
+def recorded(files: Sequence[str], said: FlightOptions = NOTHING_SAID) -> Iterator[list[str]]:
+    """The files, and in the place of each flight of others a recording of it that is gone afterwards. said : of these
+    flights."""
+    from sailviz.recording.flights import is_flight
 
     if not any(map(is_flight, files)):
         yield list(files)
@@ -69,7 +71,7 @@ def recorded(files: Sequence[str]) -> Iterator[list[str]]:
                 place = folder / str(number)
                 place.mkdir()
                 made = place / f"{Path(file).stem or 'flight'}.rrd"
-                record(read_flight(file), made)
+                record(said.read(file), made)
                 shown.append(str(made))
             else:
                 shown.append(file)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from sailviz.cli.flight_options import FlightOptions, body_option, mesh_options
 from sailviz.cli.numbers import PORT
 from sailviz.cli.outputs import folder_at
 from sailviz.cli.shared import collecting_failures, files_argument
@@ -17,6 +18,8 @@ from sailviz.cli.together import check_asked_for, check_files, name_option, one_
 @files_argument
 @together_option
 @name_option
+@body_option
+@mesh_options
 @click.option(
     "--export",
     "exported",
@@ -32,6 +35,10 @@ def web(
     files: tuple[str, ...],
     together: bool | None,
     names: tuple[str, ...],
+    body: str,
+    mesh: str | None,
+    unit: str | None,
+    front: str | None,
     exported: str | None,
     no_open: bool,
     port: int,
@@ -58,14 +65,17 @@ def web(
             webbrowser.open(url)
 
     check_asked_for(files, together, names)
-    with collecting_failures() as failures, failures.next(), recorded(files) as known:
+    said = FlightOptions(body, mesh, unit, front)
+    with collecting_failures() as failures, failures.next():
+        said.check(files)
         folder = None if exported is None else folder_at(exported, "pages")
-        check_files(known)
-        with one_picture(known, together, names) as shown:
-            if folder is not None:
-                _export(shown, folder)
-            else:
-                serve(*shown, port=port, data_port=data_port, started=started)
+        with recorded(files, said) as known:
+            check_files(known)
+            with one_picture(known, together, names) as shown:
+                if folder is not None:
+                    _export(shown, folder)
+                else:
+                    serve(*shown, port=port, data_port=data_port, started=started)
 
 
 def _export(shown: Sequence[str | Path], folder: Path) -> None:

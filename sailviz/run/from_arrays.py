@@ -11,8 +11,8 @@ from __future__ import annotations
 import hashlib
 import platform
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,14 +20,16 @@ from sailviz import ephemeris, frames
 from sailviz.constants import MU_SUN
 from sailviz.elements import elements
 from sailviz.run.array_checks import ArrayChecks, TrajectoryError
-from sailviz.run.arrays import Attitude, Body, Craft, Event, Reference, Run, Setting, Thrust
-from sailviz.run.devices import LABELS, SAILS
+from sailviz.run.arrays import Attitude, Body, Craft, CraftPart, Reference, Run, Setting, Thrust
+from sailviz.run.devices import LABELS
+from sailviz.run.given_arrays import Columns, Given, GivenMesh, Span, Turned, checked
 from sailviz.version import __version__
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from sailviz.run.array_checks import Curves, Epoch, Events, Missing
+    from sailviz.shapes.own_meshes import OwnMesh
 
 __all__ = ["TrajectoryError", "trajectory"]
 
@@ -51,6 +53,9 @@ def trajectory(
     side: float | None = None,
     tethers: int | None = None,
     tether_length: float | None = None,
+    mesh: OwnMesh | None = None,
+    unit: str | None = None,
+    front: str | None = None,
     title: str = "Trajectory",
     about: str = "",
     look_for: Iterable[str] = (),
@@ -77,6 +82,9 @@ def trajectory(
         recorded where none is given
     device : "solar-sail", "electric-sail", "plasma-brake", "thruster" or "none", for the mesh; by default what thrust
         and normal suggest. side m of a sail, tethers, tether_length m : for scale and labels
+    mesh : what the craft looks like, drawn in the attitude: a file (STL, OBJ, GLB, PLY, 3MF), a mesh or scene of
+        trimesh, or a Shape; its longest side is then the side. unit : in which it counts, "m", "cm", "mm", "in", "ft"
+        or "km", unless it says so itself; front : its axis towards the Sun, "-z" by default, which leaves it as it is
     events : (name, time s) pairs or Events. references : name -> (k, 3) m, or References
     environment : name with unit -> (n,) numbers or truth values, or (n, 3)
     gaps : (start, end) pairs, s or dates, of spans without data, within the run and between rows: nothing is drawn or
@@ -89,9 +97,10 @@ def trajectory(
         check.size(name, size)
     check.size("tethers", tethers, whole=True)
     lines = check.lines("look_for", look_for)
-    given = _checked(
-        check, time, position, velocity, normal, (attitude, scalar, direction), thrust, mass, (body, mu, radius), epoch,
-        device, environment, references, events, gaps,
+    columns = Columns(time, position, velocity, normal, attitude, thrust, mass)
+    given = checked(
+        check, columns, Turned(scalar, direction), (body, mu, radius), device, GivenMesh(mesh, unit, front, side),
+        environment, references, Span(epoch, events, gaps),
     )  # fmt: skip
     known_planets = planets and given.body.name == "Sun"
     setting = Setting(
@@ -101,7 +110,7 @@ def trajectory(
         look_for=lines,
         thesis="",
         body=given.body,
-        craft=Craft(given.device, LABELS[given.device], side, tethers, tether_length),
+        craft=_craft(given, side, tethers, tether_length),
         duration=float(given.time[-1] - given.time[0]) if len(given.time) > 1 else 1.0,
         rows=len(given.time),
         epoch=given.epoch,
@@ -115,7 +124,8 @@ def trajectory(
             "mu": given.body.mu,
             "device": given.device,
         }
-        | ({} if given.quaternion is None else {"attitude": "given"}),
+        | ({} if given.quaternion is None else {"attitude": "given"})
+        | ({} if given.mesh is None else {"mesh": given.mesh.told()}),
         versions={"sailviz": __version__, "python": platform.python_version(), "numpy": np.__version__},
         accuracy=f"{accuracy} {given.note[0].upper()}{given.note[1:]}." if given.note else accuracy,
         identity="",
@@ -126,113 +136,7 @@ def trajectory(
     return replace(run, setting=replace(setting, identity=_identity(run)))
 
 
-@dataclass(frozen=True)
-class _Given:
-    """Arguments that make a trajectory: float64 arrays of one length n, copies of their own."""
-
-    time: np.ndarray
-    position: np.ndarray
-    velocity: np.ndarray
-    normal: np.ndarray | None
-    thrust: np.ndarray
-    mass: np.ndarray
-    body: Body
-    epoch: np.datetime64 | None
-    device: str
-    environment: dict[str, np.ndarray]
-    references: tuple[Reference, ...]
-    events: tuple[Event, ...]
-    gaps: tuple[tuple[float, float], ...]
-    quaternion: np.ndarray | None  # (n, 4) x y z w, body to world
-    note: str  # what is strange about the rows though it may be so
-
-
-def _checked(
-    check: ArrayChecks,
-    time: object,
-    position: ArrayLike,
-    velocity: ArrayLike,
-    normal: ArrayLike | None,
-    turned: tuple[ArrayLike | None, str | None, str | None],
-    thrust: ArrayLike | None,
-    mass: ArrayLike | None,
-    body: tuple[str | None, float, float | None],
-    epoch: Epoch | None,
-    device: str | None,
-    environment: Mapping[str, ArrayLike] | None,
-    references: Curves,
-    events: Events,
-    gaps: Missing,
-) -> _Given:
-    """TrajectoryError with everything that is wrong, in the order of the arguments."""
-    moment = check.epoch(epoch)
-    attitude, scalar, direction = turned
-    kept = check.with_data(position, velocity)
-    if kept is not None:
-        count = len(np.ma.asarray(position))
-        time, position, velocity, normal, attitude, thrust, mass = (
-            _rows(values, kept, count) for values in (time, position, velocity, normal, attitude, thrust, mass)
-        )
-        if isinstance(environment, Mapping):
-            environment = {name: _rows(values, kept, count) for name, values in environment.items()}
-    times, moment = check.times(time, moment)
-    rows = len(times) or None
-    places, velocities = check.vectors("position", position, rows), check.vectors("velocity", velocity, rows)
-    normals = None if normal is None else check.vectors("normal", normal, rows)
-    quaternions = None if attitude is None else check.attitude(attitude, scalar, direction, rows)
-    if quaternions is not None and normals is not None:
-        check.say("normal: an attitude is given, whose z axis is the normal: leave one of them out")
-    elif quaternions is not None and check.good:
-        normals = frames.rotation(quaternions)[..., 2]
-    pushes = np.zeros((rows or 0, 3)) if thrust is None else check.vectors("thrust", thrust, rows)
-    masses, centre = check.mass(mass, rows), check.body(*body)
-    kind = check.device(_suggested(normal if attitude is None else attitude, thrust) if device is None else device)
-    columns, curves = check.environment({} if environment is None else environment, rows), check.references(references)
-    if check.good:
-        check.order(times, places)
-    strange = check.units(times, places, velocities, centre) if check.good else ""
-    if check.good:
-        check.reach(times, moment)
-    without = check.gaps(gaps, times, moment) if check.good else ()
-    marks = check.events(events, times, places, velocities, masses, without) if check.good else ()
-    if check.good and normals is not None:
-        check.stowed(normals, pushes) if kind in SAILS else check.no_zeros("normal", normals)
-    check.finish()
-    marks = _with_jumps(marks, times, places, velocities, masses)
-    note = "" if pushes.any() else strange  # thrust explains what gravity does not
-    return _Given(
-        times, places, velocities, normals, pushes, masses, centre, moment, kind, columns, curves, marks, without,
-        quaternions, note
-    )  # fmt: skip
-
-
-def _suggested(normal: ArrayLike | None, thrust: ArrayLike | None) -> str:
-    """The device that the arrays which were given suggest."""
-    return "solar-sail" if normal is not None else "thruster" if thrust is not None else "none"
-
-
-def _rows(values: Any, kept: np.ndarray, count: int) -> Any:
-    """Of what has as many rows as the trajectory was given with, those that hold data; anything else as it is."""
-    if isinstance(values, np.ma.MaskedArray):
-        found: np.ndarray = values
-    else:
-        try:
-            found = np.asarray(values)
-        except (TypeError, ValueError):  # rows of different lengths: said elsewhere
-            return values
-    return found[kept] if found.ndim and len(found) == count else values
-
-
-def _with_jumps(
-    events: tuple[Event, ...], time: np.ndarray, position: np.ndarray, velocity: np.ndarray, mass: np.ndarray
-) -> tuple[Event, ...]:
-    """The events, and one wherever two rows have one time: there the velocity jumps."""
-    states = np.column_stack([position, velocity, mass])
-    jumps = [Event("velocity jumps", float(time[row]), states[row + 1]) for row in np.flatnonzero(np.diff(time) == 0)]
-    return tuple(sorted([*events, *jumps], key=lambda event: event.time))
-
-
-def _derived(given: _Given, setting: Setting, bodies: dict[str, np.ndarray]) -> Run:
+def _derived(given: Given, setting: Setting, bodies: dict[str, np.ndarray]) -> Run:
     """The Run of arrays that fit together: angles, elements and frames from states, thrust and normal."""
     axes = frames.rtn(given.position, given.velocity)
     thrust = given.thrust
@@ -265,7 +169,16 @@ def _derived(given: _Given, setting: Setting, bodies: dict[str, np.ndarray]) -> 
     )
 
 
-def _turning(given: _Given) -> dict[str, np.ndarray]:
+def _craft(given: Given, side: float | None, tethers: int | None, tether_length: float | None) -> Craft:
+    """What flies; with a mesh of its own its side is the longest of that."""
+    label = LABELS[given.device]
+    if given.mesh is None:
+        return Craft(given.device, label, side, tethers, tether_length)
+    parts = tuple(CraftPart(part.name, part.mesh.vertices, part.mesh.faces, part.film) for part in given.mesh.parts)
+    return Craft(given.device, label, given.mesh.size, tethers, tether_length, parts=parts)
+
+
+def _turning(given: Given) -> dict[str, np.ndarray]:
     """How far the Earth has turned, rad, where it is the centre and the date is known: its map turns with it."""
     if given.body.name != "Earth" or given.epoch is None:
         return {}

@@ -75,6 +75,15 @@ def fault(time: Floats, position: Floats, velocity: Floats, mu: float) -> tuple[
     return _wrong_speed(*states, velocity[rows + 1], mu), "the rows do not follow gravity alone"
 
 
+def miss(time: Floats, position: Floats, velocity: Floats, mu: float) -> float:
+    """How far, as a share of the way, Kepler's motion under a mu m3/s2 misses the next row: the median over some rows
+    as in `fault`; infinite where no two rows follow one another."""
+    rows = _pairs(time)
+    if len(rows) == 0:
+        return np.inf
+    return _miss(position[rows], velocity[rows], position[rows + 1], time[rows + 1] - time[rows], Reading(""), mu)
+
+
 def _pairs(time: Floats) -> NDArray[np.int64]:
     """Rows that have another one a positive step after them, spread over the whole run."""
     usable = np.flatnonzero(np.diff(time) > 0)

@@ -45,13 +45,34 @@ class FileParts:
 
 def read_parts(path: str | os.PathLike[str], unit: str | None = None, front: str = "-z") -> FileParts:
     """The parts of a file. unit : of UNITS, for STL, OBJ and PLY, which have none; front : of FRONTS. ShapeError."""
+    _check_front(front)
+    meshes, factor, name, notes = _read(path, unit)
+    turn = factor * towards_sun(front)
+    found = {}
+    for part, mesh in meshes.items():
+        found[part], said = _cleaned(mesh, turn, part, name)
+        notes += said
+    check_size(found, name, unit)
+    return FileParts(name, found, tuple(notes))
+
+
+def read_meshes(path: str | os.PathLike[str], unit: str | None) -> tuple[dict[str, Trimesh], float, str]:
+    """The meshes of a file by the names of their parts, in its own axes; metres in its unit; its name. ShapeError."""
+    return _read(path, unit)[:3]
+
+
+def _check_front(front: str) -> None:
+    if front not in FRONTS:
+        raise ShapeError(f"{shown(front)} is no side that a front may face: {', '.join(FRONTS)}")
+
+
+def _read(path: str | os.PathLike[str], unit: str | None) -> tuple[dict[str, Trimesh], float, str, list[str]]:
+    """(meshes in the file's own axes and unit, metres in it, name of the file, what there is to say)"""
     file = Path(path)
     name = file.name
     kind = FORMATS.get(file.suffix.lower())
     if kind is None:
         raise ShapeError(f"{shown(name)} is no file of facets: its ending has to be one of {', '.join(FORMATS)}")
-    if front not in FRONTS:
-        raise ShapeError(f"{shown(front)} is no side that a front may face: {', '.join(FRONTS)}")
     if unit is not None and unit not in UNITS:
         raise ShapeError(f"{shown(unit)} is no unit of length here. {nearest(unit, UNITS)}")
     content = _content(file)
@@ -60,13 +81,7 @@ def read_parts(path: str | os.PathLike[str], unit: str | None = None, front: str
         file_checks.materials(file, name, content)
     meshes, notes = _meshes(kind, content, name)
     file_checks.facets(sum(len(mesh.faces) for mesh in meshes.values()), name)
-    turn = factor * _towards_sun(front)
-    found = {}
-    for part, mesh in meshes.items():
-        found[part], said = _cleaned(mesh, turn, part, name)
-        notes += said
-    _sane(found, name, unit)
-    return FileParts(name, found, tuple(notes))
+    return meshes, factor, name, notes
 
 
 def _content(file: Path) -> bytes:
@@ -146,7 +161,7 @@ def _part_name(geometry: str, file: str, kind: str) -> str:
     return "film" if nameless else geometry
 
 
-def _towards_sun(front: str) -> np.ndarray:
+def towards_sun(front: str) -> np.ndarray:
     """A rotation (3, 3) that lays an axis of the file along -z."""
     axis, sign = "xyz".index(front[1]), 1.0 if front[0] == "+" else -1.0
     z = np.zeros(3)
@@ -193,7 +208,7 @@ def _cleaned(mesh: Trimesh, turn: np.ndarray, part: str, name: str) -> tuple[Tri
     return clean, notes
 
 
-def _sane(meshes: Mapping[str, Trimesh], name: str, unit: str | None) -> None:
+def check_size(meshes: Mapping[str, Trimesh], name: str, unit: str | None) -> None:
     """A size that a craft may have, or the unit was wrong."""
     corners = np.concatenate([mesh.vertices for mesh in meshes.values()])
     size = float(np.ptp(corners, axis=0).max())

@@ -47,13 +47,20 @@ def log_own_shape(parts: tuple[CraftPart, ...], size: float, picture: Picture, p
             picture.log_mesh(f"{path}/bus", flat_sided(joined(meshes)), style.BUS)
 
 
+OWN_SIZE = 0.12  # in the system view, of a mesh whose craft is else drawn as a dot
+
+
 def drawing_of(craft: Craft) -> CraftDrawing:
-    """How a craft is drawn: as its kind is, or, of a sail with a shape, as it is."""
+    """How a craft is drawn: as its kind is, or, of one with a shape, as it is."""
     kind = CRAFT[craft.kind]
     if not craft.parts or craft.side is None:
         return kind
     own = partial(log_own_shape, craft.parts, craft.side)
-    return replace(kind, log_shape=own, stowable=("film_lit", "film_dark"), stowable_near=())
+    film = any(part.film for part in craft.parts)
+    stowable = ("film_lit", "film_dark") if film else ()
+    size, close = (kind.size, kind.close_size) if kind.size else (OWN_SIZE, CraftDrawing.close_size)
+    glow = kind.glow if kind.tether else ""  # what glows is a part of the kind's own shape, but for a tether's sheath
+    return replace(kind, log_shape=own, size=size, close_size=close, glow=glow, stowable=stowable, stowable_near=())
 
 
 def log_electric_sail(picture: Picture, path: str, near: bool) -> None:

@@ -166,7 +166,7 @@ def log_craft(picture: Picture, story: Story, names: Names) -> None:
         else:
             same = np.full((count, 3), SATELLITE)
             picture.log_pose("/world/rtn/body/shape", index, quaternion=story.spin, scale=same)
-    elif craft.pushes:
+    elif craft.pushes or story.setting.craft.parts:
         craft.log_shape(picture, "/world/rtn/body/shape", True)
         picture.log_scale("/world/rtn/body/shape", FILM)
         log_stowing(picture, "/world/rtn/body/shape", craft, index, story.stowed, True)

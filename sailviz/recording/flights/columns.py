@@ -31,13 +31,20 @@ NAMES = {  # of a column, without unit and signs -> what it is
     "thrust": ("thrust", "a", "acceleration", "thrustacceleration"),
     "normal": ("normal", "n", "attitudenormal"),
 }
+CENTRES = {  # words of a column's name that say about which body its rows are -> its word
+    **{word: word for word in ("sun", "mercury", "venus", "earth", "moon", "mars", "jupiter", "saturn")},
+    "heliocentric": "sun",
+    "geocentric": "earth",
+    "selenocentric": "moon",
+    "areocentric": "mars",
+}
 LONGEST_FILE = 4_000_000_000  # bytes
 AXES = "xyz"
 
 
 class Columns(NamedTuple):
     """A flight's columns. time (n,) s, or datetime64; epoch of time 0 where a file says it; position m, velocity m/s,
-    thrust m/s2, normal (n, 3)."""
+    thrust m/s2, normal (n, 3); centre : the body that the header names, "" for none."""
 
     time: np.ndarray
     position: np.ndarray
@@ -45,6 +52,7 @@ class Columns(NamedTuple):
     epoch: np.datetime64 | None = None
     thrust: np.ndarray | None = None
     normal: np.ndarray | None = None
+    centre: str = ""
 
 
 def read_columns(path: str | Path) -> Columns:
@@ -58,6 +66,7 @@ def read_columns(path: str | Path) -> Columns:
         raw = _archive(path) if path.suffix.lower() == ".npz" else _table(path)
     except OSError as error:
         raise RecordingError(f"cannot read {path}: {files.reason(error)}") from None
+    centre, raw = _centre(raw, path)
     found = _sorted(raw, path)
     rows = {len(values) for values in found.values()}
     if len(rows) > 1:
@@ -69,7 +78,29 @@ def read_columns(path: str | Path) -> Columns:
         raise RecordingError(f"{path} has no {' and no '.join(lacking)}: columns such as time_s, x_km, vx_km_s are due")
     time = found["time"] if "time" in found else found["date"]
     epoch = found["date"][0] - _shift(found["time"][0]) if {"time", "date"} <= set(found) and rows != {0} else None
-    return Columns(time, found["position"], found["velocity"], epoch, found.get("thrust"), found.get("normal"))
+    states = time, found["position"], found["velocity"], epoch
+    return Columns(*states, found.get("thrust"), found.get("normal"), centre)
+
+
+def _centre(raw: Mapping[str, np.ndarray], path: Path) -> tuple[str, dict[str, np.ndarray]]:
+    """The body that names of columns say (x_earth_km, heliocentric_x [au]), "" for none, and the columns by their names
+    without it. RecordingError where they say two."""
+    found: dict[str, str] = {}
+    named = {}
+    for name, values in raw.items():
+        words = re.split(r"([\s_.-]+)", name)
+        bodies = [k for k, word in enumerate(words) if word.lower() in CENTRES]
+        if len(bodies) == 1 and len(words) > 1:
+            at = bodies[0]
+            plain = "".join(words[:at] + words[at + 2 :]) if at + 2 < len(words) else "".join(words[: at - 1])
+            if plain and _meaning(plain) is not None and plain not in raw:
+                found.setdefault(CENTRES[words[at].lower()], name)
+                name = plain
+        named[name] = values
+    if len(found) > 1:
+        told = " and ".join(repr(name[:60]) for name in list(found.values())[:2])
+        raise RecordingError(f"{path}: its columns {told} are about different bodies")
+    return next(iter(found), ""), named
 
 
 def _shift(seconds: float) -> np.timedelta64:

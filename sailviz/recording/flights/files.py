@@ -12,16 +12,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from sailviz import frames
 from sailviz.calendar import DateError, tai
-from sailviz.constants import MU_EARTH, MU_SUN
 from sailviz.errors import RecordingError
 from sailviz.exchange import earth_frames, spk
+from sailviz.recording.flights.centre import body_of, centre_of, check_named
 from sailviz.recording.flights.columns import Columns, read_columns
-from sailviz.run import dates, unit_guard
+from sailviz.run import dates
 from sailviz.run.array_checks import TrajectoryError
 from sailviz.run.arrays import Run
 from sailviz.run.from_arrays import trajectory
@@ -33,7 +34,17 @@ ENDINGS = (".oem", ".bsp", *TABLES)
 J2000 = "2000-01-01T12:00:00"
 LONG_STEP, PART_OF_TURN = 5.0, 1 / 20  # a step so many times the usual one, and so long, is a gap
 LONG_PAUSE = 2.0  # row steps between two segments of a kernel from which rows are missing
-STAR_FAR = 1e10  # m, from which a flight that follows neither body's gravity is round the Sun
+
+
+class Look(NamedTuple):
+    """A mesh of one's own, as `trajectory` takes it."""
+
+    mesh: str | Path | None = None
+    unit: str | None = None
+    front: str | None = None
+
+
+NO_MESH = Look()
 
 
 def is_flight(path: object) -> bool:
@@ -41,20 +52,25 @@ def is_flight(path: object) -> bool:
     return isinstance(path, str | Path) and Path(path).suffix.lower() in ENDINGS
 
 
-def read_flight(path: str | Path) -> Run:
-    """A flight as a Run. RecordingError, in one sentence, for what is none, is cut or damaged, has no unit where one is
-    due, or says itself that it is in others."""
+def read_flight(path: str | Path, body: str = "", look: Look = NO_MESH) -> Run:
+    """A flight as a Run. body : about which it is, for a table that does not say so, one of sky.BODIES; look : what the
+    craft looks like. RecordingError, in one sentence, for what is none, is cut or damaged, has no unit where one is
+    due, or says itself that it is in others or about another body."""
+    if body:
+        body_of(body)
     ending = Path(path).suffix.lower()
     if ending not in ENDINGS:
         raise RecordingError(f"{path} is no flight that is read here: its name must end in {', '.join(ENDINGS)}")
     if ending in TABLES:
-        return _of_columns(read_columns(path), path)
-    return _of_ephemeris(read_oem(path) if ending == ".oem" else _of_kernel(path), path)
+        return _of_columns(read_columns(path), path, body, look)
+    return _of_ephemeris(read_oem(path) if ending == ".oem" else _of_kernel(path), path, body, look)
 
 
-def _of_ephemeris(given: Ephemeris, path: str | Path) -> Run:
+def _of_ephemeris(given: Ephemeris, path: str | Path, said: str, look: Look) -> Run:
     body = next((one for word, one in BODIES.items() if given.center.upper() in (word.upper(), one.name.upper())), None)
-    if body is None:
+    if body is not None:
+        check_named(said, body.name, path)
+    else:
         known = ", ".join(one.name for one in BODIES.values())
         raise RecordingError(f"{path} is about {given.center}, whose gravity is not known here; known: {known}")
     told = [f"Read from {Path(path).name}, frame {given.frame}."]
@@ -74,6 +90,7 @@ def _of_ephemeris(given: Ephemeris, path: str | Path) -> Run:
     return _run(
         path, turned.time, turned.position, turned.velocity, mu=body.mu, body=body.name, radius=body.radius,
         epoch=given.utc, gaps=turned.without_data, title=title, accuracy=" ".join(filter(None, told)),
+        **look._asdict(),
     )  # fmt: skip
 
 
@@ -130,41 +147,20 @@ def _of_kernel(path: str | Path) -> Ephemeris:
     )  # fmt: skip
 
 
-def _of_columns(given: Columns, path: str | Path) -> Run:
-    mu, body = _centre(given, path)
-    how = "Read from columns, in the ecliptic of J2000 round the Sun, in the mean equator of date round the Earth."
+def _of_columns(given: Columns, path: str | Path, said: str, look: Look) -> Run:
+    body = centre_of(given, path, said)
+    axes = {"Sun": ", in the ecliptic of J2000", "Earth": ", in the mean equator of date"}.get(body.name, "")
+    how = f"Read from columns, round the {body.name}{axes}."
     try:
         time, epoch = dates.seconds_of(given.time, None)
     except DateError as error:
         raise RecordingError(f"{path}: time {error}") from None
     return _run(
-        path, time, given.position, given.velocity, mu=mu, body=body, epoch=given.epoch if epoch is None else epoch,
-        title=Path(path).stem, accuracy=f"{how} Nothing was propagated.", gaps=_long_steps(time, given, mu),
-        thrust=given.thrust, normal=given.normal,
+        path, time, given.position, given.velocity, mu=body.mu, body=body.name, radius=body.radius,
+        epoch=given.epoch if epoch is None else epoch, title=Path(path).stem,
+        accuracy=f"{how} Nothing was propagated.", gaps=_long_steps(time, given, body.mu),
+        thrust=given.thrust, normal=given.normal, **look._asdict(),
     )  # fmt: skip
-
-
-def _centre(given: Columns, path: str | Path) -> tuple[float, str]:
-    """The body whose gravity the rows follow: the Sun or the Earth."""
-    usable = np.isfinite(given.position).all(axis=1) & np.isfinite(given.velocity).all(axis=1)
-    try:
-        time, _ = dates.seconds_of(given.time, None)
-    except DateError as error:
-        raise RecordingError(f"{path}: time {error}") from None
-    rows = time[usable], given.position[usable], given.velocity[usable]
-    if len(rows[0]) < 2:
-        raise RecordingError(f"{path} has fewer than two rows of numbers")
-    found = {}
-    for name, mu in (("Sun", MU_SUN), ("Earth", MU_EARTH)):
-        found[name] = unit_guard.fault(*rows, mu)
-        if found[name] == ("", ""):
-            return mu, name
-    far = float(np.median(np.linalg.norm(rows[1], axis=1))) > STAR_FAR
-    name, mu = ("Sun", MU_SUN) if far else ("Earth", MU_EARTH)
-    wrong = found[name][0]
-    if wrong:
-        raise RecordingError(f"{path}: {wrong}")
-    return mu, name
 
 
 def _long_steps(time: np.ndarray, given: Columns, mu: float) -> tuple[tuple[float, float], ...]:

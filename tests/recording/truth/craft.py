@@ -72,6 +72,9 @@ def stowing(f, entity):
 def film(f, entity):
     """The side of the film that is visible from the Sun is golden, the other one blue; its normal is /attitude/normal;
     it bulges away from the light and has the side of the square that is told."""
+    if "mesh" in f.truth.resolved:
+        own_part(f, entity)
+        return
     normal = seen(f, entity, f.truth.normal)
     side = {FRONT: 1.0, BACK: -1.0}[int(f.picture.fixed(entity, "Mesh3D:face_rendering")[0])]
     word = hue(f.picture.color(entity, "Mesh3D:albedo_factor")[0])
@@ -86,6 +89,25 @@ def film(f, entity):
         same_place(np.abs(points[:, :2]).max(), size(f, entity) * np.sqrt(0.5), size=100 * size(f, entity))
         assert points[:, 2].min() > -1e-4 * size(f, entity), "the film is drawn below its corners"
         assert points[:, 2].max() > 0.03 * size(f, entity)
+
+
+def own_part(f, entity):
+    """Of a mesh of one's own all parts together fill the box that is told, in m over its longest side, in the attitude
+    of the row; the lit side of a film looks along -z of the body."""
+    top, told = entity.rsplit("/", 1)[0], f.truth.resolved["mesh"]
+    drawn = [each for each in (f"{top}/film_lit", f"{top}/bus") if each in f.picture.entities]
+    low, high = np.array(told["low_m"]), np.array(told["high_m"])
+    side = float(f.truth.scene["craft_side_m"])
+    assert side == (high - low).max()
+    for row in some(f, 4):
+        points = np.concatenate([parts(f, each, row) for each in drawn]) * side / size(f, entity)
+        same_place(points.min(0), low, size=10 * side)
+        same_place(points.max(0), high, size=10 * side)
+    if "/film_" in entity:
+        visible = {FRONT: 1.0, BACK: -1.0}[int(f.picture.fixed(entity, "Mesh3D:face_rendering")[0])]
+        seen_from = visible * facing(f, entity, 0) @ body(f, entity)[0][:, 2]
+        word = hue(f.picture.color(entity, "Mesh3D:albedo_factor")[0])
+        assert word == ("yellow" if seen_from < 0 else "blue"), f"the side towards the Sun is {word}"
 
 
 def flat(f, entity, thickness=0.03, reach=(0.0, 1.1)):

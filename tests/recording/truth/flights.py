@@ -10,6 +10,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+import trimesh
 
 import sailviz
 from sailviz import frames
@@ -405,15 +406,26 @@ def to_the_moon():
     )
 
 
+def lopsided() -> trimesh.Scene:
+    """A plate and a box, in mm, alike in no two directions; the front of the plate is along +x."""
+    scene = trimesh.Scene()
+    plate = [[0, -900, -200], [0, 1500, -200], [0, 1500, 700], [0, -900, 700]]
+    scene.add_geometry(trimesh.Trimesh(plate, [[0, 1, 2], [0, 2, 3]], process=False), geom_name="plate")
+    box = trimesh.creation.box([300, 400, 500])
+    box.apply_translation([-250, 100, 50])
+    scene.add_geometry(box, geom_name="box")
+    return scene
+
+
 def quaternions() -> sailviz.Run:
-    """Arrays with an attitude of their own, rolled about the normal."""
+    """Arrays with an attitude of their own, rolled about the normal, and with a mesh of their own."""
     angle = np.linspace(0.0, 1.5, 25)
     place = AU * np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1)
     speed = np.sqrt(MU_SUN / AU) * np.stack([-np.sin(angle), np.cos(angle), 0 * angle], 1)
     axes = frames.body_axes(frames.unit(place + np.array([0.0, 0.0, 0.4 * AU])), np.tile([0.2, 0.4, 0.9], (25, 1)))
     return trajectory(
         angle * np.sqrt(AU**3 / MU_SUN), place, speed, attitude=frames.quaternion(axes), scalar="last",
-        direction="body_to_world", thrust=3e-4 * axes[..., 2],
+        direction="body_to_world", thrust=3e-4 * axes[..., 2], mesh=lopsided(), unit="mm", front="+x",
     )  # fmt: skip
 
 

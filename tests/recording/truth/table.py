@@ -186,7 +186,10 @@ def of_craft(top: str) -> list[Claim]:
 
 
 def bus(f, entity):
-    """A sail's bus is on the dark side; that of others is in the middle."""
+    """A sail's bus is on the dark side; that of others is in the middle; one of one's own is where its mesh says."""
+    if "mesh" in f.truth.resolved:
+        craft.own_part(f, entity)
+        return
     (craft.shade_bus if f.truth.kind == "solar-sail" else craft.middle)(f, entity)
 
 

@@ -126,6 +126,44 @@ def writing(
         output.discard()
 
 
+@contextmanager
+def writing_folder(path: str | os.PathLike[str], what: str, mine: Callable[[Path], str]) -> Iterator[Path]:
+    """Yields a folder to write into; it has its own name once the block ends well, and is gone if it does not.
+
+    mine : looks at a folder that is there and not empty, which the new one would take the place of, and says in words
+    why that must not be, "" where it may. OutputError for every OSError on the way.
+    """
+    asked = Path(path)
+    target = asked.resolve() if asked.is_symlink() else asked
+    if target.exists() and not target.is_dir():
+        raise OutputError(f"cannot write the {what} into {asked}: it is no folder")
+    if not target.parent.is_dir():
+        raise OutputError(f"cannot write the {what} into {asked}: there is no directory {target.parent}")
+    part, old = (target.with_name(f".{target.name}.{os.getpid()}.{word}") for word in ("new", "old"))
+    try:
+        reason_against = mine(target) if target.is_dir() and any(target.iterdir()) else ""
+        if reason_against:
+            raise OutputError(f"cannot write the {what} into {asked}: {reason_against}")
+        part.mkdir()
+    except OSError as error:
+        raise OutputError(f"cannot write the {what} into {asked}: {reason(error)}") from None
+    try:
+        yield part
+        if target.exists():
+            os.replace(target, old)
+        try:
+            os.replace(part, target)
+        except OSError:
+            if old.exists():
+                os.replace(old, target)
+            raise
+    except OSError as error:
+        raise OutputError(f"cannot write the {what} into {asked}: {reason(error)}") from None
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+        shutil.rmtree(old, ignore_errors=True)
+
+
 def write_text(path: str | os.PathLike[str], text: str, what: str = "file") -> None:
     """Write a text file (UTF-8), whole or not at all. OutputError where it cannot be written."""
     with writing(path, what) as part:

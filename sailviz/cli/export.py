@@ -13,14 +13,14 @@ from sailviz.cli.shared import in_one_sentence
 @click.option(
     "--to",
     "form",
-    type=click.Choice(["csv", "parquet", "npz", "oem", "aem", "spk", "ck"]),
+    type=click.Choice(["csv", "parquet", "npz", "oem", "aem", "spk", "ck", "cosmographia"]),
     help="Format; by default the ending of -o, .bsp for spk, .bc for ck.",
 )
-@click.option("-o", "--output", metavar="FILE|DIR", help="By default a file named after the recording, in this folder.")
+@click.option("-o", "--output", metavar="FILE|DIR", help="By default named after the recording, in this folder.")
 @click.option(
     "--entity", "entities", multiple=True, metavar="/ENTITY", help="Only this entity, e.g. /state; repeatable."
 )
-@click.option("--frame", default="", help="Frame of an OEM, AEM, SPK or CK: EME2000, or ECLIPJ2000.")
+@click.option("--frame", default="", help="Frame of a message or kernel: EME2000, or ECLIPJ2000.")
 @click.option("--craft-id", type=int, default=-910001, show_default=True, help="NAIF id of the craft in kernels.")
 @click.option("--centre-id", type=int, help="NAIF id of the central body in an SPK; by default by its name.")
 def export(
@@ -36,6 +36,9 @@ def export(
 
     spk holds the positions and velocities. ck holds the attitude: SPICE reads NAME.bc with the clock NAME.tsc and the
     frame NAME.tf, which are written beside it.
+
+    cosmographia makes a folder, -o DIR or NAME-cosmographia: open its load.json in NAIF's Cosmographia (File, Open
+    Catalog). The folder must be new, empty, or one that this command has made.
     """
     from sailviz import recording
 

@@ -6,6 +6,7 @@ csv, parquet   one table: step, time_s, utc where there is an epoch, then entity
 npz            every column under its own key, e.g. state.position_m (n, 3), events.time_s, scene.identity
 oem, spk       position and velocity (orbit_files.py); a new segment after a gap and at a jump
 aem, ck        the attitude (attitude_files.py); beside a CK its clock and its frame, NAME.tsc and NAME.tf
+cosmographia   a folder with catalogue, kernels and mesh (cosmographia.py)
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from sailviz.recording.comparison.tables import Evidence, Source, Table, evidenc
 from sailviz.recording.orbit_files import ATTITUDES, CRAFT, ORBIT_FILES, check_ids, write_orbit
 from sailviz.recording.reader import EventRow, FilePath
 
-FORMATS = ("csv", "parquet", "npz", *ORBIT_FILES)
+FORMATS = ("csv", "parquet", "npz", *ORBIT_FILES, "cosmographia")
 ENDING = {"spk": "bsp", "ck": "bc"}  # of a file, where that is not the format's word
 ENDINGS = {ending: to for to, ending in ENDING.items()}
 FEW = 5  # rows of an entity that stands on other rows than the truth, where only a part of those is wanted
@@ -46,13 +47,21 @@ def export(
     out : file or folder; without one a file named after the recording in the current folder. to : one of FORMATS, by
     default the ending of `out`; a device or a pipe takes the rows alone, with no file of events beside it. entities :
     those wanted, all of the truth by default. frame : of an OEM, AEM, SPK or CK, see `orbit_files`. craft_id : NAIF's
-    of the craft in an SPK or a CK; centre_id : of the central body in an SPK; that of the Sun, a planet or the Moon
+    of the craft in kernels; centre_id : of the central body in an SPK; that of the Sun, a planet or the Moon
     needs no word.
     Raises RecordingError, in one sentence, for what cannot be read, written or said in that format.
     """
     data = evidence(source)
     path, to = _target(data, out, to)
     wanted = tuple("/" + name.strip("/") for name in entities)
+    if to == "cosmographia":
+        from sailviz.recording.cosmographia import write_cosmographia
+
+        if wanted or centre_id is not None:
+            raise RecordingError(
+                "a folder for Cosmographia holds the whole flight: it takes no entity and no centre_id"
+            )
+        return (write_cosmographia(source, path, frame, craft_id),)
     files.check(path, "table")
     try:
         check_ids(to, craft_id, centre_id)
@@ -81,7 +90,10 @@ def _target(data: Evidence, given: FilePath | None, to: str) -> tuple[Path, str]
             raise RecordingError(f"a recording is exported to one of {', '.join(FORMATS)}; say which")
     if to not in FORMATS:
         raise RecordingError(f"cannot export to {to}; there are {', '.join(FORMATS)}")
-    name = f"{Path(data.label).stem or 'run'}.{ENDING.get(to, to)}"
+    stem = Path(data.label).stem or "run"
+    if to == "cosmographia":
+        return Path(f"{stem}-cosmographia") if out is None else out, to
+    name = f"{stem}.{ENDING.get(to, to)}"
     if out is None:
         return Path(name), to
     return (out / name if out.is_dir() else out), to

@@ -8,6 +8,8 @@ from sailviz import frames
 from sailviz.errors import RecordingError
 from sailviz.exchange import ck, daf, spk
 from sailviz.recording import export, record
+from sailviz.recording.attitude_files import product
+from sailviz.sky import Sky
 
 START = 8.274e8  # s of TDB after J2000
 RATE = np.array([2e-4, -3e-4, 5e-4])  # rad/s, of the frame
@@ -24,8 +26,6 @@ def spinning(rows, start=START, step=60.0):
     et = start + step * np.arange(rows)
     spin = quaternion(RATE, np.linalg.norm(RATE) * (et - start))
     first = np.tile(np.array([0.1, 0.7, -0.5, 0.5]) / np.linalg.norm([0.1, 0.7, -0.5, 0.5]), (rows, 1))
-    from sailviz.recording.attitude_files import product
-
     return ck.Pointing(et, product(spin, first))
 
 
@@ -158,18 +158,20 @@ SCENE = {
 }  # fmt: skip
 
 
+@pytest.fixture(scope="module")
+def run():
+    return sailviz.simulate(SCENE)
+
+
 @pytest.mark.parametrize("frame", ["", "ECLIPJ2000"])
-def test_an_exported_attitude_is_that_of_the_run_in_spice(spice, tmp_path, frame):
+def test_an_exported_attitude_is_that_of_the_run_in_spice(spice, run, tmp_path, frame):
     """By the matrices of the run itself, turned to the axes of the kernel."""
-    run = sailviz.simulate(SCENE)
     record(run, tmp_path / "a.rrd")
     files = export(tmp_path / "a.rrd", tmp_path / "a.bc", frame=frame)
     assert [file.name for file in files] == ["a.bc", "a.tsc", "a.tf"]
     for file in files:
         spice.furnsh(str(file))
     et = spk.seconds_of_tdb(np.datetime64(SCENE["epoch"], "ns"), run.time)
-    from sailviz.sky import Sky
-
     own = frames.icrf_to("equator-of-date", Sky(np.datetime64(SCENE["epoch"], "ns")).centuries)
     home = own.T if not frame else frames.icrf_to("ecliptic-j2000") @ own.T
     for row in (0, 17, 59):
@@ -202,8 +204,7 @@ def test_where_the_attitude_jumps_both_sides_are_there_and_a_stowed_sail_has_non
     assert len(segment.ticks) == 9
 
 
-def test_a_clock_and_a_centre_that_have_no_place_are_refused(tmp_path):
-    run = sailviz.simulate(SCENE | {"propagation": {"duration_d": 0.1, "outputs": 5}})
+def test_a_clock_and_a_centre_that_have_no_place_are_refused(run, tmp_path):
     with pytest.raises(RecordingError, match="no place for a centre_id"):
         export(run, tmp_path / "a.bc", centre_id=10)
     with pytest.raises(RecordingError, match=r"a CK's name ends in \.bc"):

@@ -28,7 +28,8 @@ from sailviz.cli.shared import BAD_INPUT, tell
     "quantities",
     multiple=True,
     metavar="NAME",
-    help="Of a recording, over time: a quantity as [[expect]] names it, or a column of /environment. May be repeated.",
+    help="Of a recording, over time: a quantity as [[expect]] names it, a column of /environment, or thrust/NAME, the "
+    "push of one of several devices. May be repeated.",
 )
 @click.option("--orbit", is_flag=True, help="Of a recording: its orbit, seen from the pole or, if low, in its plane.")
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")

@@ -9,8 +9,10 @@ from itertools import pairwise
 import numpy as np
 
 from sailviz.figures.drawing import FigureError
+from sailviz.recording.contract import word
 from sailviz.recording.drawing import style as colors
 from sailviz.recording.drawing.plots import COLOR_OF, LOGARITHMIC, UNITS, WORDS
+from sailviz.recording.drawing.shares import device_colors
 from sailviz.run.arrays import Run
 from sailviz.scene.quantities import DIMENSIONS, Quantity, spellings
 from sailviz.words import nearest
@@ -108,11 +110,17 @@ class Curve:
     size: float = 1.0
 
 
+SHARE = "thrust/"  # before the name of a device
+
+
 def curve_of(run: Run, name: str) -> Curve:
-    """What a name means: `radius_au` as [[expect]] writes it, `radius` in the usual unit, or a column of /environment.
+    """What a name means: `radius_au` as [[expect]] writes it, `radius` in the usual unit, a column of /environment, or
+    `thrust/NAME`, what one of several devices adds to the push, in the usual unit or in `thrust/NAME_um_s2`.
     FigureError, with the nearest name, where it means nothing, and where this run has none of it."""
     if name in run.environment and run.environment[name].ndim == 1:
         return column(run, name)
+    if name.startswith(SHARE):
+        return share(run, name)
     quantity = spellings().get(name) or spellings().get(usual(run, name))
     if quantity is None:
         known = [*DIMENSIONS, *spellings(), *run.environment]
@@ -126,6 +134,24 @@ def curve_of(run: Run, name: str) -> Curve:
     unit = UNIT_WORDS.get(quantity.unit, quantity.unit)
     words = f"{words} [{unit}]" if unit else words
     return Curve(name, words, color, values, quantity.turn, is_dense(quantity), quantity.stem, quantity.factor)
+
+
+def share(run: Run, name: str) -> Curve:
+    """The push of one device, called by its own name or by that of its entity."""
+    asked = name.removeprefix(SHARE)
+    for device, thrust in run.devices.items():
+        for called in (device, word(device)):
+            unit = asked.removeprefix(called).removeprefix("_") or "mm_s2"
+            quantity = spellings().get(f"thrust_acceleration_{unit}")
+            if quantity is None or asked not in (called, f"{called}_{unit}"):
+                continue
+            words = f"Push of the {device} [{UNIT_WORDS.get(unit, unit)}]"
+            values = thrust.magnitude / quantity.factor
+            return Curve(name, words, device_colors(run)[device], values, stem=f"{SHARE}{device}", size=quantity.factor)
+    if not run.devices:
+        raise FigureError(f"there is no {name!r}: this craft has one device, whose push is thrust_acceleration")
+    known = [f"{SHARE}{word(device)}" for device in run.devices]
+    raise FigureError(f"there is no quantity {name!r}. {nearest(name, known)}".rstrip())
 
 
 def usual(run: Run, stem: str) -> str:

@@ -8,6 +8,7 @@ from click.testing import CliRunner
 
 pytest.importorskip("matplotlib")
 
+from sailviz import load_scene, record, simulate
 from sailviz.cli import main
 from sailviz.constants import AU
 from sailviz.elements import elements
@@ -66,6 +67,27 @@ def test_curves_are_the_rows_in_the_units_that_their_titles_say(flight, style):
         np.testing.assert_allclose(x, time / DAY, rtol=1e-12)
         np.testing.assert_allclose(y, values, rtol=1e-9)
     assert drawn.axes[-1].get_xlabel() == "time since the start [d]"
+
+
+def test_what_one_of_several_devices_adds_is_drawn_by_its_name_in_the_color_of_its_kind(tmp_path):
+    scene = load_scene("hybrid/pole-sitter-like", {"propagation.duration_yr": 0.1, "propagation.outputs": 21})
+    flown = simulate(scene)
+    record(flown, tmp_path / "two.rrd")
+    run = run_of(read(tmp_path / "two.rrd"))
+    for name, device, size in (
+        ("thrust/sail", "sail", 1e-3),
+        ("thrust/ion_engine", "ion engine", 1e-3),
+        ("thrust/ion engine_um_s2", "ion engine", 1e-6),
+    ):
+        curve = curve_of(run, name)
+        np.testing.assert_allclose(curve.values, flown.devices[device].magnitude / size, rtol=1e-12)
+        assert curve.words == f"Push of the {device} [{'mm/s²' if size == 1e-3 else 'µm/s²'}]"
+        assert list(curve.color) == list(colors.DEVICES["solar-sail" if device == "sail" else "thruster"])
+    assert (curve.values * 1e-6)[0] == pytest.approx(0.0623425454669534e-3)
+    with pytest.raises(FigureError, match='Did you mean "thrust/sail"'):
+        curve_of(run, "thrust/sial")
+    with pytest.raises(FigureError, match="there is no quantity 'thrust/sail_km'"):
+        curve_of(run, "thrust/sail_km")
 
 
 def test_the_orbit_from_the_pole_is_x_and_y_with_the_rings_of_planets_near_it(flight):

@@ -14,6 +14,7 @@ from sailviz.frames import unit
 FIELD = 0.50  # half the height of a view, of the distance to what it looks at
 WELL, WANTED = 0.3, 0.75  # cosine of a lit side that is well seen, and for how much of the time it should be
 SLOW, FAST = 200, 440  # deg, the most that a sweep turns, and where that does not suffice
+OPEN = np.radians(42.0)  # between an eye and the normal of a plane that is seen open
 FITTING = 12  # rounds in which target and distance are found
 
 
@@ -189,4 +190,14 @@ def over_planet(orbit_normal: np.ndarray, sun: np.ndarray | None) -> np.ndarray:
     if sun is not None:
         cost = cost + 0.9 * np.abs(eyes @ sun - 0.72)
     best: np.ndarray = eyes[np.argmin(cost)]
+    return best
+
+
+def over_plane(normal: np.ndarray, line: np.ndarray) -> np.ndarray:
+    """Direction that sees a plane with a normal (3,) as open as `OPEN`, a line (3,) in it at its full length, with z
+    up."""
+    toward = unit(normal) if normal[2] >= 0 else -unit(normal)
+    aside = unit(np.cross(toward, line))
+    eyes = np.cos(OPEN) * toward + np.sin(OPEN) * aside * np.array([[1.0], [-1.0]])
+    best: np.ndarray = eyes[np.argmax(eyes[:, 2] - np.maximum(eyes[:, 2] - 0.9, 0.0) * 9.0)]
     return best

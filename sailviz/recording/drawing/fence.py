@@ -14,10 +14,13 @@ import rerun as rr
 
 from sailviz.frames import unit
 from sailviz.recording.drawing import style
+from sailviz.recording.drawing.layout import SO_FAR, TO_COME, Span
 from sailviz.recording.drawing.log import Picture, f4
+from sailviz.recording.drawing.samples import TURNS
 from sailviz.recording.drawing.story import Story
 
 PIECES = 60
+PIECES_OF_TURNS = 360  # of a flight of which only the last turn has a wall
 ROWS = 1010  # of the wall, at most
 ALONG = 0.35  # of the thrust: what is across the trail by less than this leans along it
 HIGH, RING_HIGH, LEAST_HIGH = 0.17, 0.11, 0.07  # of S, at the largest push
@@ -107,12 +110,28 @@ def leaning(story: Story) -> np.ndarray:
     return np.asarray(unit(np.cross(story.position, story.samples.velocity)))
 
 
+def one_turn(story: Story) -> bool:
+    """Whether only the last turn has a wall: those of very many turns would hide each other and the planet."""
+    return story.frame.sparse and not story.ring
+
+
+def fence_spans(story: Story) -> dict[str, Span]:
+    """Which part of the run each part of the wall shows."""
+    if story.ring:
+        return {}
+    spans: dict[str, Span] = {"past": SO_FAR, "future": TO_COME}
+    if one_turn(story):
+        spans = {"past": (-story.duration / min(TURNS, story.frame.turns), 0.0)}
+    both = [(f"/world/fence/{part}", span) for part, span in spans.items()]
+    return dict([*both, *((f"{path}/edge", span) for path, span in both)])
+
+
 def log_fence(picture: Picture, story: Story, fence: Fence) -> None:
     """Write /world/fence."""
     if story.ring:
         log_ring(picture, fence)
         return
-    pairs = pieces_of(fence)
+    pairs = pieces_of(fence, PIECES_OF_TURNS if one_turn(story) else PIECES)
     if not pairs:
         return
     index = story.samples.index_of(fence.row[[b for _, b in pairs]])
@@ -121,7 +140,7 @@ def log_fence(picture: Picture, story: Story, fence: Fence) -> None:
     colors = [wall_colors(fence.strength[a : b + 1]) for a, b in pairs]
     edges = [f4(fence.top[a : b + 1]) for a, b in pairs]
     counts = [len(part) for part in corners]
-    for part in ("past", "future"):
+    for part in ("past",) if one_turn(story) else ("past", "future"):
         path = f"/world/fence/{part}"
         columns = [
             *rr.Mesh3D.columns(
@@ -135,10 +154,10 @@ def log_fence(picture: Picture, story: Story, fence: Fence) -> None:
         picture.log_columns(f"{path}/edge", index, rr.LineStrips3D.columns(strips=edges))
 
 
-def pieces_of(fence: Fence) -> list[tuple[int, int]]:
+def pieces_of(fence: Fence, count: int = PIECES) -> list[tuple[int, int]]:
     """The first and the last point of each piece, which are rows; a piece ends where there is a gap."""
     ends = np.flatnonzero(fence.row >= 0)
-    cuts = np.unique(np.linspace(0, len(ends) - 1, PIECES + 1).astype(int))
+    cuts = np.unique(np.linspace(0, len(ends) - 1, count + 1).astype(int))
     marks = np.unique(np.concatenate([ends[cuts], *((start, end - 1) for start, end in fence.parts)])).astype(int)
     last = {end - 1 for _, end in fence.parts}
     return [(a, b) for a, b in pairwise(marks.tolist()) if a not in last]

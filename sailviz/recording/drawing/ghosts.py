@@ -8,6 +8,7 @@ import rerun as rr
 from sailviz.frames import body_axes, quaternion
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.log import Picture, f4
+from sailviz.recording.drawing.samples import TURNS
 from sailviz.recording.drawing.story import Story
 from sailviz.shapes import sails
 from sailviz.shapes.primitives import circle, disc
@@ -20,9 +21,11 @@ SPOKES = 4
 
 
 def ghost_rows(story: Story) -> np.ndarray:
-    """Rows evenly along the path, its ends left out; of a ring those of one revolution, evenly in time."""
-    if story.ring:
-        return np.unique(np.linspace(0, story.once_round - 1, COUNT + 1).astype(int)[:-1])
+    """Rows evenly along the path, its ends left out; of a ring, or of very many turns, those of one revolution, evenly
+    in time."""
+    if story.ring or story.frame.sparse:
+        once = story.once_round if story.ring else round(len(story.time) / TURNS) + 1
+        return np.unique(np.linspace(0, once - 1, COUNT + 1).astype(int)[:-1])
     step = np.linalg.norm(np.diff(story.position, axis=0), axis=1)
     way = np.concatenate([[0.0], np.cumsum(step)])
     count = COUNT if story.turns < 3 else MANY

@@ -59,7 +59,7 @@ def log_low_orbit(
     run = story.samples.run
     picture.log_static("/world", rr.ViewCoordinates.RIGHT_HAND_Z_UP)
     log_stars(picture, "/world/stars", style.STARS_RADIUS * story.reach)
-    Planet(picture, story.setting, "Sun" in run.bodies).add(story.samples)
+    Planet(picture, story.setting, "Sun" in run.bodies, story.reach).add(story.samples)
     log_orbit(picture, story, *orbit_colors(story, flights))
     plane = log_plane(picture, story, flights)
     riding, names = riding_along(story), Names(story)
@@ -301,6 +301,7 @@ def riding_along(story: Story) -> Space:
         "- /world/craft/**",
         "- /world/plane/**",
         "- /world/night/umbra",
+        "- /world/night/penumbra",
         "- /world/night/sunlight/**",
     )
     return Space(Camera(riding_name(story), "/world/rtn", tuple(eye.tolist()), TARGET, (1.0, 0.0, 0.0)), contents)
@@ -322,7 +323,7 @@ def descent(story: Story) -> list[Space]:
     high = story.reach
     middle, distance = 0.5 * (0.98 + high), 1.15 * (high - 0.98)
     contents = [f"+ /world/{name}/**" for name in ("stars", "plane", "center", "night")]
-    contents += ["- /world/night/umbra", "- /world/night/sunlight/**"]
-    contents += [f"- /world/center/air/shell{k}" for k in range(1, 7)]  # their heights are for the eye only
+    contents += ["- /world/night/umbra", "- /world/night/penumbra", "- /world/night/sunlight/**"]
+    contents += ["- /world/center/air/halo"]  # its heights are for the eye only
     camera = Camera(DESCENT, "/world/plane", (middle, 0.0, distance), (middle, 0.0, 0.0), (1.0, 0.0, 0.0))
     return [Space(camera, tuple(contents))]

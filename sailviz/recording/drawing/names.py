@@ -148,7 +148,17 @@ def boxes(
     flat = on_screen(local, camera, across / high) * [0.5 * across, -0.5 * high]
     half = 0.5 * (wide(words) if isinstance(words, str) else lengths(words, len(places)))
     top = flat[:, 1] + BELOW
-    return np.stack([flat[:, 0] - half, flat[:, 0] + half, top, top + TALL], 1)
+    box = np.stack([flat[:, 0] - half, flat[:, 0] + half, top, top + TALL], 1)
+    box[cut(box, size)] = np.nan
+    return box
+
+
+def cut(box: np.ndarray, size: Size) -> np.ndarray:
+    """Which of boxes (n, 4) lie across the left or the right edge of their view, where words would be cut. (n,)"""
+    edge = 0.5 * size[0]
+    with np.errstate(invalid="ignore"):
+        left = (box[:, 0] < -edge) & (box[:, 1] > -edge)
+        return np.asarray(left | ((box[:, 0] < edge) & (box[:, 1] > edge)))
 
 
 def lengths(words: list[str], count: int) -> np.ndarray:

@@ -9,7 +9,7 @@ import rerun as rr
 
 from sailviz.recording.drawing.log import Index, Picture
 from sailviz.recording.drawing.phases import names_in_rows
-from sailviz.recording.drawing.phrases import digits, moments, on_day, push_words
+from sailviz.recording.drawing.phrases import body_words, digits, moments, on_day, push_words
 from sailviz.recording.drawing.shares import share_words
 from sailviz.recording.drawing.story import GROUND, Story
 from sailviz.run import gaps as spans
@@ -83,11 +83,6 @@ def distance_words(story: Story) -> list[str]:
     decimals = 2 if unit_name == "au" and away.max() < 99.5 else digits(float(away.max()))
     name = unit_name if unit_name == "au" else f"× {unit_name}"
     return [f"{value:.{decimals}f} {name} from {whose}" for value in away.tolist()]
-
-
-def body_words(name: str) -> str:
-    """The Earth, but Mars."""
-    return f"the {name}" if name in ("Sun", "Earth", "Moon") else name
 
 
 def speed_words(story: Story, decimals: int) -> list[str]:

@@ -89,3 +89,8 @@ def on_day(seconds: float, duration: float) -> str:
     size, word = clock(duration)
     value = seconds / size
     return f"{word.lower()} {value:.0f}" if duration / size >= 20 and word != "Year" else f"{word.lower()} {value:.1f}"
+
+
+def body_words(name: str) -> str:
+    """The Earth, but Mars."""
+    return f"the {name}" if name in ("Sun", "Earth", "Moon") else name

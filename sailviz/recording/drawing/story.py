@@ -23,6 +23,11 @@ RING_TURNS = 1.2  # revolutions from which it is drawn once round
 LIFTED = 0.10  # height over the plane x, y, of S, from which a flight counts as lifted out of it
 BRIGHT_TAIL = 0.10  # of the duration, and at most BRIGHT_TURN revolutions: the bright part of the trail
 BRIGHT_TURN = 0.13
+ARROW, RING_ARROW, TURNS_ARROW = (
+    0.17,
+    0.12,
+    0.10,
+)  # of S, arrows of the push: of a flight, of a ring, of very many turns
 SPINS = 8  # turns of a spinning tether in a replay, so that the eye follows
 SPIN_AXIS = {"along-track": (0.0, 1.0, 0.0), "across-track": (1.0, 0.0, 0.0)}  # in the body: x ahead, z up
 GROUND = 200e3  # m below which a descent is a plunge, without a mean orbit
@@ -242,7 +247,8 @@ class Story:
     @property
     def arrows(self) -> Arrows:
         """How long the arrow of its push is, by itself or beside other flights."""
-        return self.beside or Arrows(0.12 if self.ring else 0.17, self.most)
+        least = TURNS_ARROW if self.frame.sparse else RING_ARROW if self.ring else ARROW
+        return self.beside or Arrows(least, self.most)
 
     def arrow(self) -> np.ndarray:
         """(n, 3) the arrow of the push: never short where it pushes at all, nothing where it does not."""

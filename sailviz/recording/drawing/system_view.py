@@ -16,13 +16,21 @@ from sailviz.recording.contract import word
 from sailviz.recording.drawing import cameras, style
 from sailviz.recording.drawing.cameras import Camera
 from sailviz.recording.drawing.ensemble_names import add_ensemble_names
-from sailviz.recording.drawing.fence import Fence, fence_of, log_fence
+from sailviz.recording.drawing.fence import Fence, fence_of, fence_spans, log_fence
 from sailviz.recording.drawing.flights import Flight, log_body, log_flights
 from sailviz.recording.drawing.ghosts import log_ghosts
-from sailviz.recording.drawing.influence import log_influence
+from sailviz.recording.drawing.influence import (
+    at_the_bodies,
+    log_influence,
+    passages_of,
+    paths_of_passages,
+    spheres_in_sight,
+    spheres_of,
+)
 from sailviz.recording.drawing.landmarks import (
     CRAFT,
     MARK,
+    RING,
     SUN,
     Landmarks,
     landmarks_of,
@@ -30,11 +38,17 @@ from sailviz.recording.drawing.landmarks import (
     nominal_words,
     reaches,
 )
-from sailviz.recording.drawing.layout import ALL, SO_FAR, TO_COME, Space, Span
+from sailviz.recording.drawing.layout import ALL, Space, Span
 from sailviz.recording.drawing.log import Picture, f4
 from sailviz.recording.drawing.names import MAIN, MAIN_OVER_TABLE, Names
 from sailviz.recording.drawing.passages import log_passages
-from sailviz.recording.drawing.planet import Planet, about_axis
+from sailviz.recording.drawing.planet import (
+    MAGNETOPAUSE_NAME,
+    SUNLIGHT_NAME,
+    Planet,
+    about_axis,
+    sunlight_scale,
+)
 from sailviz.recording.drawing.samples import orbits
 from sailviz.recording.drawing.shares import log_shares
 from sailviz.recording.drawing.sky import log_stars, log_sun
@@ -48,8 +62,8 @@ SWEEP_TURNS = 1.25  # revolutions up to which the eye goes along
 ASPECT = 1005 / 576  # of the main view in a window of 1600 x 900
 SWEPT = 5  # angles of a sweep at which everything must fit
 LADDER = 12  # osculating orbits that show a flight of many turns
-SUNLIT_NAME = 1.36  # radii of a planet from its centre at which "sunlight" stands
 SMALLEST = 0.35  # of its size that a craft keeps near a planet
+NAME_BEYOND = 1.15  # lengths of the arrow of the push that must be in sight, so that its name is
 EDGES = 0.10  # of the time at either end, whose pictures count more
 FLAT, HIGH = (30.0, 38.0, 42.0), (38.0, 44.0)  # deg, elevations of the eye over flights of few and of many turns
 LIFTED_FILM, LIFTED_WHEEL = (-24.0, -14.0, -4.0, 8.0, 20.0, 26.0), (20.0, 24.0, 28.0)
@@ -73,15 +87,15 @@ def log_system(
     spans = log_trail(picture, story, alone=not flights) | log_flights(picture, flights, size, names)
     if fence is not None:
         log_fence(picture, story, fence)
-        for part, span in (("past", SO_FAR), ("future", TO_COME)):
-            spans |= {f"/world/fence/{part}": span, f"/world/fence/{part}/edge": span} if not story.ring else {}
+        spans |= fence_spans(story)
         log_ghosts(picture, story, size)
     camera, turn = main_camera(story, found, fence, size, flights)
     if np.any(turn):
         picture.log_pose("/world/pan", story.index, quaternion=about_axis(turn))
     log_landmarks(picture, story, found, first_eye(camera), names)
     log_passages(picture, story, first_eye(camera), names)
-    log_influence(picture, story, names)
+    spheres = spheres_of(story)
+    log_influence(picture, story, names, spheres)
     if story.setting.ensembles:
         add_ensemble_names(story, names)
     add_push_name(story, size, turned(np.tile(first_eye(camera), (len(turn), 1)), -turn), names)
@@ -89,7 +103,9 @@ def log_system(
     if story.frame.sparse:
         log_ladder(picture, story)
         spans["/world/ladder"] = ALL
-    return views_of(story, camera), spans, nominal_words(found, flights[0].name if flights else "this flight")
+    hidden = paths_of_passages(spheres)
+    spaces = [*views_of(story, camera, hidden), *at_the_bodies(story, spheres, first_eye(camera))]
+    return spaces, spans, nominal_words(found, flights[0].name if flights else "this flight")
 
 
 def system_words(story: Story) -> list[str]:
@@ -128,9 +144,14 @@ def log_backdrop(picture: Picture, story: Story, names: Names) -> None:
         names.add("/world/names/Sun", "Sun", style.SUN, below, SUN)
     elif body.radius > 0:
         sun = story.samples.run.bodies.get("Sun")
-        Planet(picture, story.setting, sun is not None, named=False).add(story.samples)
+        Planet(picture, story.setting, sun is not None, story.reach, named=False).add(story.samples)
+        names.add("/world/names/central", body.name, style.planet_color(body.name), np.array([0.0, 0.0, -1.0]), SUN)
         if sun is not None:
-            names.add("/world/names/sunlight", "sunlight", style.SUN, SUNLIT_NAME * unit(sun), CRAFT)
+            place = SUNLIGHT_NAME * sunlight_scale(story.reach) * unit(sun)
+            names.add("/world/names/sunlight", "sunlight", style.SUN, place, CRAFT)
+            if story.setting.magnetopause is not None:
+                nose = MAGNETOPAUSE_NAME * float(story.setting.magnetopause[:, 1].min()) / body.radius * unit(sun)
+                names.add("/world/names/magnetopause", "magnetopause", style.dim(style.WIND, 0.8), nose, RING)
     else:
         picture.log_static("/world/center", rr.Points3D([[0, 0, 0]], radii=points(7), colors=[style.SUN]))
         if story.frame.unit_name == "au":  # a star
@@ -218,7 +239,10 @@ def main_camera(
     if not (film or story.craft.slanted):
         normals = np.tile([0.0, 0.0, 1.0], (len(moments), 1))
     turn = np.zeros(len(story.time))
-    if story.turns <= SWEEP_TURNS and not story.ring and story.turns > 0.02:
+    passed = passages_of(story)
+    if passed:  # the bodies apart, and the way from one to the other across the view
+        eye = cameras.over_plane(np.cross(story.position, story.samples.velocity).sum(0), passed[0])
+    elif story.turns <= SWEEP_TURNS and not story.ring and story.turns > 0.02:
         places = unit(story.position[moments])
         sails = cameras.Moments(normals, thrusts, places, story.share[moments], weights)
         going = cameras.sweep(sails, film, FLAT[1])
@@ -269,7 +293,7 @@ def near_planets(story: Story, found: Landmarks) -> list[np.ndarray]:
 def places_in_sight(story: Story, found: Landmarks, fence: Fence | None, size: float, turn: np.ndarray) -> np.ndarray:
     """Everything that must fit, (k, 3), in the frame of the eye, which turns by `turn` (n,) rad."""
     position, arrow = story.position, story.arrow()
-    still = [position, *found.farthest(story.reach)]
+    still = [position, *found.farthest(story.reach), *spheres_in_sight(story)]
     still += [way for way in found.ways(story.reach).values() if not story.frame.sun]
     if fence is not None:
         still.append(fence.top)
@@ -279,13 +303,13 @@ def places_in_sight(story: Story, found: Landmarks, fence: Fence | None, size: f
     for ensemble in story.setting.ensembles:
         still.append(ensemble.places(ensemble.kept[:, -1]).reshape(-1, 3) / story.frame.unit)
     if not np.any(turn):
-        arrows = position + arrow if story.ring else (position + arrow)[[0, -1]]
+        arrows = position + arrow if story.ring else (position + NAME_BEYOND * arrow)[story.moments]
         around = position[[0, -1], None] + size * np.array([[0, 0, -1.0], [0, 0, 1.0]])
         return np.concatenate([*still, arrows, around.reshape(-1, 3)])
     fixed = np.concatenate(still)
     swept = [turned(fixed, np.full(len(fixed), angle)) for angle in np.linspace(0, turn[-1], SWEPT)]
     edge = np.array([0.0, 0.0, size])
-    moving = [position + 1.15 * arrow, position - edge, position + edge]
+    moving = [position + NAME_BEYOND * arrow, position - edge, position + edge]
     return np.concatenate(swept + [turned(part, turn) for part in moving])
 
 
@@ -318,10 +342,10 @@ def add_push_name(story: Story, size: float, eye: np.ndarray, names: Names) -> N
     names.add("/world/names/push", "push", style.PUSH, np.where((story.push > 0)[:, None], place, np.nan), CRAFT)
 
 
-def views_of(story: Story, camera: Camera) -> list[Space]:
-    """The main view, from above, and riding along."""
+def views_of(story: Story, camera: Camera, hidden: Sequence[str] = ()) -> list[Space]:
+    """The main view, from above, and riding along. hidden : what only other views show."""
     reach = story.reach
-    everything = ("+ /world/**",)
+    everything = ("+ /world/**", *(f"- {path}" for path in hidden))
     top = float(max(2.35 * reach, 1.5 * story.position[:, 2].max() + 1.2 * reach))
     ride = riding_eye(story) * 0.75 * reach
     along = (*everything, "- /world/names/**", "- /world/marks/**")

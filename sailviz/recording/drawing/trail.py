@@ -10,10 +10,12 @@ from sailviz.recording.drawing import style
 from sailviz.recording.drawing.layout import SO_FAR, TO_COME, Span
 from sailviz.recording.drawing.log import Color, Picture
 from sailviz.recording.drawing.phases import rows_at_switches, words_and_colors
-from sailviz.recording.drawing.samples import orbits, smooth_lines
+from sailviz.recording.drawing.samples import orbits, rings, smooth_lines
 from sailviz.recording.drawing.story import Story
+from sailviz.shapes.primitives import circle
 
 STRIP = 4  # drawn rows in one piece
+CIRCLE = 241  # points of an orbit
 RING_PAST = 0.9  # revolutions of a ring's trail
 OF_THE_FIRST: dict[str, Color] = {
     "recent": style.TRAIL_RECENT,
@@ -34,8 +36,7 @@ def log_trail(
     """Write trail or orbit under `top` -> which part of the run each part shows. They do not overlap: lines on one
     another tear. alone : no other flight is drawn, and phases have colours of their own."""
     if story.frame.sparse:
-        picture.log_strip_style(f"{top}/orbit", colors["recent"], 0.8 * style.WIDTH["recent"])
-        picture.log_strips(f"{top}/orbit", story.index, orbits(story.samples.run, story.frame))
+        log_orbit(picture, story, f"{top}/orbit", colors["recent"])
         return {}
     parts = [part for part in colors if not (part == "future" and story.ring)]
     ends, pieces = pieces_of(story)
@@ -52,6 +53,18 @@ def log_trail(
         f"{top}/trail/future": TO_COME,
     }
     return {path: span for path, span in spans.items() if path.rsplit("/", 1)[-1] in parts}
+
+
+def log_orbit(picture: Picture, story: Story, path: str, color: Color) -> None:
+    """The orbit of each row: one circle, moved, turned and stretched to it, or lines where some orbit is open."""
+    run, width = story.samples.run, 0.8 * style.WIDTH["recent"]
+    if np.all(run.elements.eccentricity < 1):
+        picture.log_lines(path, [circle(CIRCLE)], color, width)
+        inertial = np.broadcast_to(np.eye(3), story.samples.axes.shape)
+        picture.log_pose(path, story.index, **rings(run, inertial, story.frame))
+        return
+    picture.log_strip_style(path, color, width)
+    picture.log_strips(path, story.index, orbits(run, story.frame))
 
 
 def colors_of_phases(story: Story, ends: np.ndarray, part: str) -> np.ndarray:

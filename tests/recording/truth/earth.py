@@ -103,14 +103,70 @@ def zone_bounds(f, name):
     return angle.min(), angle.max(), f.picture.color(name, "Mesh3D:albedo_factor")[0, 3]
 
 
-def umbra(f, entity):
-    """A cylinder as wide as the planet, behind it."""
+SUN = 695_700e3  # m
+
+
+def shadow(f, entity, inside: bool):
+    """Points of a cone on the side away from the Sun: at each depth as wide as the shadow of a ball before a larger one
+    is, by similar triangles from the tip of the cone; it reaches past the flight, or to the tip."""
+    radius = f.truth.radius
     for row in some(f, 4):
-        points, sun = f.picture.place(entity, "Mesh3D:vertex_positions", row), f.truth.sun[row]
-        along = -points @ sun
-        assert along.min() > -0.01
-        assert along.max() > 1.5
-        same_place(np.linalg.norm(points + along[:, None] * sun, axis=1), np.ones(len(points)), size=1e4)
+        sun, distance = f.truth.sun[row], f.truth.sun_distance[row]
+        points = f.picture.place(entity, "Mesh3D:vertex_positions", row) * f.truth.length
+        depth = -points @ sun
+        off = np.linalg.norm(points + depth[:, None] * sun, axis=1)
+        tip = radius * distance / (SUN - radius if inside else SUN + radius)  # behind the ball, or before it
+        half = np.arcsin(radius / tip)
+        wide = np.tan(half) * (tip - depth if inside else tip + depth)
+        season = 0.035 * np.abs(wide - radius)  # it has one shape all year, in which the Sun's distance varies
+        assert np.all(np.abs(off - wide) < 1e-4 * radius + season), f"{np.abs(off - wide).max() / radius:.3g} radii off"
+        assert depth.min() > -0.01 * radius
+        far = max(2.59 * radius, 1.1 * f.truth.reach * f.truth.length)
+        assert depth.max() > (min(far, 0.98 * tip) if inside else far)
+
+
+def umbra(f, entity):
+    """Where all of the Sun is hidden: narrower and narrower."""
+    shadow(f, entity, True)
+
+
+def penumbra(f, entity):
+    """Where some of the Sun is hidden: wider and wider."""
+    shadow(f, entity, False)
+
+
+def terminator(f, entity):
+    """On the ground, where the Sun is on the horizon."""
+    for row in some(f, 5):
+        (line,) = f.picture.line(entity, row)
+        same_place(np.linalg.norm(line, axis=1), np.ones(len(line)), size=1e4)
+        height = np.degrees(np.arcsin(unit(line) @ f.truth.sun[row]))
+        assert np.abs(height).max() < ALMANAC
+        assert np.ptp(line @ np.array([[1.0, 0, 0], [0, 1, 0], [0, 0, 1]]), axis=0).max() > 1.4  # all round
+
+
+def halo(f, entity):
+    """Shells above the ground, the densest lowest, lit from behind."""
+    pose = f.picture.pose(entity, 0)
+    points = f.picture.fixed(entity, "Mesh3D:vertex_positions") @ pose[:3, :3].T
+    sizes = f.picture.fixed(entity, "InstancePoses3D:scales")
+    assert np.all(sizes == sizes[:, :1])
+    radius = np.linalg.norm(points, axis=1)
+    assert np.ptp(radius) < 1e-5
+    assert len(sizes) > 6
+    for size in sizes[:, 0]:
+        assert 1.0 < size * radius[0] < 1.06
+    heights = np.sort(sizes[:, 0])
+    assert np.all(np.diff(heights, 2) > -1e-6)  # closer together the lower they are
+    assert f.picture.fixed(entity, "Mesh3D:face_rendering")[0] == 3
+    assert hue(f.picture.color(entity, "Mesh3D:albedo_factor")[0]) == "blue"
+
+
+def central_name(f, entity):
+    """The planet's own name, under it."""
+    for _, place in shown(f, entity):
+        same_place(place, [0.0, 0.0, -1.0])
+    assert f.picture.fixed(entity, "Points3D:labels") == [f.truth.body]
 
 
 def sunlight(f, entity):
@@ -234,6 +290,6 @@ def magnetopause(f, entity):
 def magnetopause_name(f, entity):
     """Its word a little before its nose."""
     assert f.picture.fixed(entity, "Points3D:labels") == ["magnetopause"]
-    place = f.picture.place(entity, "Points3D:positions", 0)[0]
-    same_direction(place, f.truth.sun[0])
-    assert 1.0 < np.linalg.norm(place) * f.truth.length / 6_371.2e3 / 10.251873 < 1.1
+    for row, place in shown(f, entity):
+        same_direction(place, f.truth.sun[row])
+        assert 1.0 < np.linalg.norm(place) * f.truth.length / 6_371.2e3 / 10.251873 < 1.1

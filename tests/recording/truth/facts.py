@@ -261,6 +261,13 @@ class Truth:
             return np.stack([np.cos(angle), np.sin(angle) * np.cos(TILT), np.sin(angle) * np.sin(TILT)], -1)
         return unit(sun_place(self.seconds))
 
+    @cached_property
+    def sun_distance(self) -> np.ndarray:
+        """(n,) m of the Sun from the Earth."""
+        if self.seconds is None:
+            return np.full(len(self), AU)
+        return np.linalg.norm(sun_place(self.seconds), axis=1)
+
     @property
     def sailing_round_a_planet(self) -> bool:
         """Whether the light that pushes the craft is not at the centre."""

@@ -387,6 +387,21 @@ def in_and_out_of_the_wind():
     )
 
 
+def many_turns():
+    """A sail that goes round the Earth 36 times, in 201 rows."""
+    return sailviz.simulate(
+        {
+            "title": "Many turns in few rows",
+            "body": "earth",
+            "start": {"kind": "elements", "semi_major_axis_km": 108428.329, "eccentricity": 0.35, "inclination_deg": 9},
+            "device": {"kind": "solar-sail", "characteristic_acceleration_mm_s2": 0.096, "film": "ideal"},
+            "steering": {"kind": "sun-facing"},
+            "environment": {"shadow_of": []},
+            "propagation": {"duration_d": 150, "outputs": 201},
+        }
+    )
+
+
 def to_the_moon():
     """A ballistic flight past the Moon."""
     return sailviz.simulate(
@@ -495,6 +510,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "held": scene("wind/held-displaced", propagation__outputs=61),
     "light": scene("wind/flickering-sun", **SMALL),
     "round a planet": round_a_planet,
+    "many turns": many_turns,
     "to the Moon": to_the_moon,
     "in and out of the wind": in_and_out_of_the_wind,
     "own sail": own_sail,
@@ -514,4 +530,4 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "together low": together_low,
 }
 TOGETHER = tuple(name for name in FLIGHTS if name.startswith("together"))
-SLOWED = ("decay", "drag", "own point")
+SLOWED = ("decay", "drag", "own point", "many turns")

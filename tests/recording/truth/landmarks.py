@@ -8,7 +8,7 @@ import numpy as np
 
 from . import phases
 from .facts import AU, DAY, MADE_UP, PLANETS, TILT, planet_place
-from .measure import hue, same_place
+from .measure import ULP, hue, same_place
 from .seen import poses, shown, some, spots
 from .system import PLANET_HUES
 
@@ -207,6 +207,26 @@ def influence(f, entity, name):
     apart = np.linalg.norm(f.truth.position - places, axis=1)
     assert apart.min() < 2 * radius
     assert apart.max() > radius
+
+
+def passed_globe(f, entity, name):
+    """A ball of the Moon's radius where the Moon is."""
+    places, _ = sphere(f, name)
+    for row in some(f, 5):
+        points = f.picture.place(entity, "Mesh3D:vertex_positions", row) * f.truth.length
+        off = np.linalg.norm(points - places[row], axis=1)
+        assert np.abs(off - 1_737.4e3).max() < 1e3 + ULP * np.abs(places).max()
+
+
+def passed_way(f, entity, name):
+    """The way as far from the Moon, in every row, as the flight then was: through each row within two radii of its
+    sphere, in the frame in which the Moon stands still."""
+    places, radius = sphere(f, name)
+    own = f.truth.position - places
+    near = np.linalg.norm(own, axis=1) < 2 * radius
+    for row in some(f, 3):
+        line = np.concatenate(f.picture.line(entity, row)) * f.truth.length - places[row]
+        same_place(line, own[near], size=np.abs(places).max())
 
 
 def influence_name(f, entity, name):

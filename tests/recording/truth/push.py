@@ -15,8 +15,16 @@ from .seen import arrows, home, near, seen, shown, texts
 RAMP = np.array([[74, 56, 140], [176, 60, 140], [255, 96, 72], [255, 176, 84]], float)  # weak to strong
 FOOT = 0.30  # brightness of a wall at the trail
 GHOSTS = 0.62  # of the craft's colours
-SHORTEST, LONGEST = SHORTEST_LONGEST = 0.17, 0.34  # of the reach: arrows; on a ring
+SHORTEST_LONGEST = 0.17, 0.34  # of the reach: arrows; on a ring
 ON_RING = 0.12, 0.24
+OF_MANY_TURNS = 0.10, 0.20
+
+
+def arrow_lengths(f) -> tuple[float, float]:
+    """Of a weak push and of the strongest, of the reach."""
+    if f.truth.slowed:
+        return OF_MANY_TURNS
+    return ON_RING if ring(f) else SHORTEST_LONGEST
 
 
 def strength(f) -> np.ndarray:
@@ -203,7 +211,7 @@ def push_arrow(f, entity):
     same_place(origin, home(f, entity))
     same_direction(vector, f.truth.carried(f.truth.thrust))
     push = strength(f)
-    low, high = ON_RING if ring(f) else (SHORTEST, LONGEST)
+    low, high = arrow_lengths(f)
     length = np.linalg.norm(vector, axis=1) / scene_reach(f)
     strongest = max(strength(g).max() for g in f.all)  # of all flights in the picture: their arrows are comparable
     expected = np.where(push > 0, low + (high - low) * push / strongest, 0.0)
@@ -243,7 +251,7 @@ def share_arrow(f, entity, word):
     _, whole = arrows(f, f"{top}/push")
     parts = [arrows(f, f"{top}/shares/{path_word(other)}")[1] for other in f.truth.devices]
     sizes = [device["magnitude_m_s2"] for device in f.truth.devices.values()]
-    longest = 12.0 if near(entity) else 2 * (ON_RING if ring(f) else SHORTEST_LONGEST)[0] * scene_reach(f)
+    longest = 12.0 if near(entity) else 2 * arrow_lengths(f)[0] * scene_reach(f)
     for row in np.flatnonzero(np.any(vector, axis=1)):
         factor = np.linalg.norm(whole[row]) / strength(f)[row]
         factor = min(factor, longest / max(size[row] for size in sizes))

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sailviz import frames
 from sailviz.constants import AU
 from sailviz.ephemeris import planet_orbit
 from sailviz.figures.catalogue import Entry
@@ -227,11 +228,19 @@ def orbit(
         draw_curve(pen, panel, run, curve)
 
 
+def to_ecliptic(run: Run) -> np.ndarray:
+    """Rotation (3, 3) from the frame of a heliocentric flight to the ecliptic of J2000."""
+    home = frames.icrf_to("ecliptic-j2000")
+    turned: np.ndarray = home @ frames.icrf_to("icrf").T
+    return turned if run.setting.resolved.get("frame") == "icrf" else np.eye(3)
+
+
 def from_the_pole(pen: Pen, axes: Axes, run: Run, targets: list[np.ndarray]) -> None:
     """The way of a flight in the plane x, y: about the Sun the ecliptic, with the orbits of planets near it."""
     sun = run.setting.body.name == "Sun"
     size, word = (AU, "au") if sun else (1e6, "thousand km")
-    x, y = run.position[:, 0] / size, run.position[:, 1] / size
+    turn = to_ecliptic(run) if sun else np.eye(3)
+    x, y = (run.position @ turn.T / size)[:, :2].T
     reach = float(np.linalg.norm(run.position, axis=1).max()) / size
     if sun:
         epoch = run.setting.epoch
@@ -240,7 +249,7 @@ def from_the_pole(pen: Pen, axes: Axes, run: Run, targets: list[np.ndarray]) -> 
             if np.linalg.norm(ring, axis=1).min() < NEAR * reach:
                 color = pen.readable(colors.planet_color(name))
                 axes.plot(ring[:, 0], ring[:, 1], color=color, linewidth=0.9, label=name, gid=f"orbit of {name}")
-    for k, target in enumerate(targets if sun else []):
+    for k, target in enumerate([target @ turn.T for target in targets] if sun else []):
         axes.plot(
             target[:, 0],
             target[:, 1],

@@ -10,14 +10,14 @@ import numpy as np
 
 import sailviz
 from sailviz import elements as orbital
-from sailviz import ephemeris
+from sailviz import ephemeris, frames
 from sailviz.environment import ionosphere
 from sailviz.environment.magnetosphere import NONE, SHUE
 from sailviz.environment.magnetosphere import Parameters as Magnetosphere
 from sailviz.propagate import stepping
 from sailviz.propagate.patience import Patience
 from sailviz.run.arrays import Reference, Setting, Shell
-from sailviz.scene.sky import is_sail, light_away
+from sailviz.scene.sky import SERIES, frame_of, is_sail, light_away
 from sailviz.scene.start import DesignedStart
 from sailviz.simulation.accuracy import accuracy_in_words
 from sailviz.simulation.bodies import epoch_of
@@ -26,7 +26,7 @@ from sailviz.simulation.environment import ENVIRONMENT, drawn_bodies
 from sailviz.simulation.integration import INTEGRATORS, begun
 from sailviz.simulation.parameters_in_words import parameters_in_words
 from sailviz.simulation.plan import Plan
-from sailviz.simulation.sky import body_places
+from sailviz.simulation.sky import SceneSky, body_places
 from sailviz.simulation.start import departure
 from sailviz.simulation.steering import steering_of
 
@@ -127,10 +127,27 @@ def _target(p: Plan) -> tuple[str, orbital.Elements] | None:
         return None if aim is None else ("target orbit", aim)
     if wanted.planet is not None:
         name = wanted.planet.capitalize()
-        return wanted.name or f"orbit of {name}", ephemeris.planet_ellipse(name, epoch_of(p.scene))
+        return wanted.name or f"orbit of {name}", _in_frame(p, ephemeris.planet_ellipse(name, epoch_of(p.scene)))
     size = wanted.radius or wanted.semi_major_axis
     scalars: list[Any] = [size, wanted.eccentricity, wanted.inclination, wanted.raan, wanted.argument, 0.0]
     return wanted.name or "target orbit", orbital.Elements(*scalars)
+
+
+def _turn(p: Plan) -> np.ndarray:
+    """Rotation (3, 3) from the ecliptic of J2000, in which orbits of planets are known, to the frame of a heliocentric
+    scene."""
+    return frames.icrf_to(frame_of(p.scene)) @ frames.icrf_to("ecliptic-j2000").T
+
+
+def _in_frame(p: Plan, orbit: orbital.Elements) -> orbital.Elements:
+    """An orbit about the Sun in the scene's frame, its true anomaly left 0."""
+    if frame_of(p.scene) == "ecliptic-j2000":
+        return orbit
+    e = orbit
+    r, v = orbital.state(e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument, 0.0, p.body.mu)
+    e = orbital.elements(_turn(p) @ r, _turn(p) @ v, p.body.mu)
+    scalars: list[Any] = [float(x) for x in (e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument)]
+    return orbital.Elements(*scalars, 0.0)
 
 
 def _shells(p: Plan) -> tuple[Shell, ...]:
@@ -160,6 +177,8 @@ def planets_in_view(p: Plan, farthest: float | None = None) -> dict[str, np.ndar
         return {body.name: body.orbit for body in drawn}
     reach = 1.15 * (_farthest(p) if farthest is None else farthest)
     orbits = {name: ephemeris.planet_orbit(name, epoch_of(p.scene)) for name in ephemeris.PLANETS}
+    if frame_of(p.scene) != "ecliptic-j2000":
+        orbits = {name: orbit @ _turn(p).T for name, orbit in orbits.items()}
     return {name: orbit for name, orbit in orbits.items() if np.linalg.norm(orbit, axis=1).min() <= reach}
 
 
@@ -187,4 +206,11 @@ def bodies(p: Plan, planets, time) -> dict[str, np.ndarray]:
         return {}
     if p.body.name == "Earth":
         return {"Sun": ephemeris.sun_position(epoch, time)}
-    return {name: ephemeris.planet_position(name, epoch, time, p.scene.ephemeris) for name in planets}
+    plain = frame_of(p.scene) == "ecliptic-j2000" and p.scene.ephemeris in (SERIES, "de421")
+    if p.sky is None and plain:
+        return {name: ephemeris.planet_position(name, epoch, time, p.scene.ephemeris) for name in planets}
+    sky = p.sky or SceneSky(p.scene, p.body, epoch)
+    assert sky.places is not None
+    alone = "earth" if "earth" in sky.words else "earth-moon"  # an Earth without its Moon is drawn where both are
+    words = {name: alone if name == "Earth" else name.lower() for name in planets}
+    return {name: sky.places.position(word, "sun", time) for name, word in words.items()}

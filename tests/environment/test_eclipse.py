@@ -7,6 +7,7 @@ import pytest
 
 from sailviz.constants import AU, RADIUS_EARTH, RADIUS_SUN
 from sailviz.environment.eclipse import SHADOWS, circular_fraction, conical, cylindrical, sunlit
+from sailviz.environment.shadow import lit_share
 
 SUN = np.array([0.6, 0.48, 0.64])  # of length one
 ACROSS = np.array([0.8, -0.36, -0.48])  # and square to it
@@ -66,6 +67,29 @@ def test_beyond_the_umbras_tip_the_earth_leaves_a_ring_of_sun():
     behind = 2e9
     a, b = np.arcsin(RADIUS_SUN / (AU + behind)), np.arcsin(RADIUS_EARTH / behind)
     assert light(conical, behind, 0.0) == pytest.approx(1 - (b / a) ** 2, rel=1e-9)
+
+
+EARTH, MOON = RADIUS_EARTH, 1737.4e3
+OFF = np.radians(8.7)  # as seen from the Earth, at the edge of its shadow
+
+
+@pytest.mark.parametrize(
+    ("radius", "x", "y", "share"),
+    [
+        (EARTH, -3100, 6385, 0.7857427),
+        (EARTH, -42164 * np.cos(OFF), 42164 * np.sin(OFF), 0.4961783),
+        (EARTH, -1_500_000, 5000, 0.5047279),
+        (MOON, -384_400, 1500, 0.5365585),
+        (MOON, -384_400, 0, 0.0505577),
+    ],
+)
+@pytest.mark.parametrize("turn", [0.0, 1.9])
+def test_lit_shares_of_low_and_far_places_are_those_of_a_quadrature(radius, x, y, share, turn):
+    """The light at 1 au from the body; places in km. The rows agree with a quadrature of the disc to 4e-8 or better."""
+    c, s = np.cos(turn), np.sin(turn)
+    place = 1e3 * (c * x - s * y), 1e3 * (s * x + c * y), 0.0
+    found = lit_share.py_func(*place, AU * c, AU * s, 0.0, radius, RADIUS_SUN)
+    assert found == pytest.approx(share, abs=9e-8)
 
 
 def test_the_sunny_side_is_lit_and_kinds_are_chosen_by_number():

@@ -7,36 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from independent.under_sky import DE421, GEO, elements, fly, sail
 
-import sailviz
-from sailviz.constants import AU, DAY, MU_EARTH, MU_SUN, RADIUS_EARTH
-from sailviz.elements import apoapsis, periapsis
-
-DE421 = {"epoch": "2026-03-20T00:00:00", "ephemeris": "de421"}
-R_GEO = 42_164_169.0
-GEO = {"kind": "cartesian", "position_m": [R_GEO, 0, 0], "velocity_m_s": [0, float(np.sqrt(MU_EARTH / R_GEO)), 0]}
-DARKLESS = {"shadow_of": []}
-
-
-def elements(a, e, i, node, argument, anomaly):
-    return {
-        "kind": "elements", "semi_major_axis_km": a, "eccentricity": e, "inclination_deg": i, "raan_deg": node,
-        "argument_deg": argument, "true_anomaly_deg": anomaly,
-    }  # fmt: skip
-
-
-def sail(strength):
-    return {"kind": "solar-sail", "characteristic_acceleration_mm_s2": 1e3 * strength}
-
-
-def locally(goal, **more):
-    return {"kind": "locally-optimal", "goal": goal, **more}
-
-
-def fly(days, tolerance=1e-13, outputs=2, **scene):
-    given = {"title": "under a sky", "device": {"kind": "none"}, "body": "earth", **scene}
-    given["propagation"] = {"duration_d": days, "outputs": outputs, "tolerance": tolerance}
-    return sailviz.simulate(given)
+from sailviz.constants import AU, DAY, MU_SUN
+from sailviz.sky import Sky
 
 
 @pytest.fixture
@@ -55,19 +29,59 @@ LUNAR = {
 
 @pytest.mark.usefixtures("de421")
 @pytest.mark.parametrize(
-    ("start", "days", "end", "within"),
+    ("start", "days", "end", "speed", "within"),
     [
-        (GEO, 10, (41520805.933, 7337087.034, -18353.336), 1e-3),
-        (GEO, 60, (21005397.12, 36559749.46, -17820.70), 6e-3),
-        (FAR, 10, (129094517.158, 176244969.176, 26691390.886), 3e-3),
-        (FAR, 60, (112174388.19, 307402622.75, 180029739.08), 1e-2),
-        (LUNAR, 3, (48068115.470, 303097483.460, 165026148.885), 1e-3),
-        (LUNAR, 6, (10192630.33, 297829881.15, 160768832.10), 6e-3),
+        (GEO, 10, (41520805.933, 7337087.034, -18353.336), (-534.88422029, 3027.74652690, 0.46008660), 1e-3),
+        (GEO, 60, (21005397.12, 36559749.46, -17820.70), None, 6e-3),
+        (FAR, 10, (129094517.158, 176244969.176, 26691390.886), (433.446052, 1115.249838, 537.337144), 3e-3),
+        (FAR, 60, (112174388.19, 307402622.75, 180029739.08), None, 1e-2),
+        (LUNAR, 3, (48068115.470, 303097483.460, 165026148.885), (-123.708033, 456.167749, 240.826511), 1e-3),
+        (LUNAR, 6, (10192630.33, 297829881.15, 160768832.10), None, 6e-3),
     ],
 )
-def test_moon_and_sun_pull_a_craft_round_the_earth(start, days, end, within):
+def test_moon_and_sun_pull_a_craft_round_the_earth(start, days, end, speed, within):
     found = fly(days, start=start, frame="icrf", environment={"gravity_of": ["moon", "sun"]}, **DE421)
     assert np.linalg.norm(found.position[-1] - end) < within
+    if speed is not None:
+        assert found.velocity[-1] == pytest.approx(speed, abs=6e-7)
+
+
+@pytest.mark.usefixtures("de421")
+def test_a_flight_past_the_moon_is_the_same_as_seen_from_the_earth_and_from_the_moon():
+    """14,857.27 km from the Moon's centre, at 5.224 d. From the Moon its fall towards the Earth is the bodies' own; in
+    DE421 it is that to 26 m in three days."""
+    around = {"gravity_of": ["moon", "sun"]}
+    seen = fly(6, start=LUNAR, frame="icrf", environment=around, outputs=6 * 1440 + 1, **DE421)
+    moon = np.linalg.norm(seen.position - seen.bodies["Moon"], axis=1)
+    assert moon.min() / 1e3 == pytest.approx(14857.27, abs=0.01)
+    assert seen.time[moon.argmin()] / DAY == pytest.approx(5.224, abs=1e-3)
+    half = 3 * 1440
+    sky = Sky(np.datetime64(DE421["epoch"], "ns"), "icrf", "de421")
+    around_then = np.array([-30.0, -15.0, 15.0, 30.0]) + 3 * DAY
+    stencil = np.array([1.0, -8.0, 8.0, -1.0]) / 180.0
+    handed_on = {
+        "kind": "cartesian",
+        "position_m": list(map(float, seen.position[half] - seen.bodies["Moon"][half])),
+        "velocity_m_s": list(map(float, seen.velocity[half] - stencil @ sky.position("moon", "earth", around_then))),
+    }
+    later = {"epoch": "2026-03-23T00:00:00", "ephemeris": "de421", "frame": "icrf"}
+    other = fly(3, body="moon", start=handed_on, environment={"gravity_of": ["earth", "sun"]}, **later)
+    assert np.linalg.norm(seen.position[-1] - seen.bodies["Moon"][-1] - other.position[-1]) < 30
+
+
+@pytest.mark.usefixtures("de421")
+@pytest.mark.parametrize(
+    ("start", "both", "others", "within"), [(GEO, 722e3, 1.9, 0.05), (FAR, 72_000e3, 104, 0.5)], ids=["ring", "far"]
+)
+def test_who_matters_round_the_earth(start, both, others, within):
+    """What is left out displaces a craft in 60 d: without Moon and Sun hundreds of km, without planets metres."""
+    flown = {"start": start, "frame": "icrf", **DE421}
+    ends = [
+        fly(60, **flown, environment={"gravity_of": bodies} if bodies else {}).position[-1]
+        for bodies in ([], ["moon", "sun"], ["moon", "sun", "venus", "mars", "jupiter"])
+    ]
+    assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(both, rel=0.01)
+    assert np.linalg.norm(ends[2] - ends[1]) == pytest.approx(others, abs=within)
 
 
 @pytest.mark.usefixtures("de421")
@@ -81,12 +95,13 @@ def test_moon_and_sun_pull_a_craft_round_the_earth(start, days, end, within):
 def test_planets_pull_a_craft_round_the_sun(bodies, end):
     start = {"kind": "cartesian", "position_m": [AU, 0, 0], "velocity_m_s": [0, float(np.sqrt(MU_SUN / AU)), 0]}
     found = fly(5 * 365.25, body="sun", start=start, environment={"gravity_of": bodies}, **DE421)
-    assert np.linalg.norm(found.position[-1] - end) < 0.2
+    assert np.linalg.norm(found.position[-1] - end) < 0.15
 
 
 @pytest.mark.usefixtures("de421")
 def test_a_sail_keeps_its_station_within_the_earths_orbit_in_real_gravity():
-    """At 0.98 of the Earth's heliocentric state, which the row gives to 1e-6 m/s: 2 m after 30 d."""
+    """At 0.98 of the Earth's heliocentric state, which the row gives to 1e-6 m/s: 2 m after 30 d. 0.02 m/s across too
+    much would be 50 km."""
     start = {
         "kind": "cartesian",
         "position_m": [0.98 * x for x in (-148940181496.0, 2531871683.9, 451881.0)],
@@ -96,171 +111,37 @@ def test_a_sail_keeps_its_station_within_the_earths_orbit_in_real_gravity():
     found = fly(30, body="sun", start=start, device=sail(0.305972616e-3), environment=around, **DE421)
     assert np.linalg.norm(found.position[-1] - (-129272362503.0, -70488092430.4, 2448727.5)) < 2.5
     assert found.velocity[-1] == pytest.approx((13495.663392, -25753.420236, 0.718713), abs=2e-6)
-
-
-@pytest.mark.parametrize(
-    ("start", "strength", "days", "steering", "end"),
-    [
-        (GEO, 1e-3, 10, {"kind": "sun-facing"}, (24293626.86, -51686631.89, -116585.50)),
-        (
-            GEO, 1e-3, 10, {"kind": "sun-frame", "pitch_deg": 35, "clock_deg": 90},
-            (44678551.35, -27318393.42, -242164.72),
-        ),
-        (
-            elements(17 * RADIUS_EARTH / 1e3, 12 / 34, 23.439, 0, 0, 0), 9.60e-5, 60, {"kind": "sun-facing"},
-            (-120243971.4, -10420900.3, -4517950.3),
-        ),
-        (GEO, 1e-3, 10, locally("energy"), (-4271094.715, 42970517.059, -8032.756)),
-        (
-            elements(30_000, 0.2, 20, 30, 40, 50), 1e-3, 10, locally("eccentricity"),
-            (18011419.7, -29016482.2, -12911713.7),
-        ),
-    ],
-)  # fmt: skip
-def test_a_sail_round_the_earth_under_an_even_sun(start, strength, days, steering, end):
-    found = fly(days, start=start, device=sail(strength), steering=steering, environment=DARKLESS)
-    assert np.linalg.norm(found.position[-1] - end) < 0.1
+    ratio = np.linalg.norm(found.position[-1]) / np.linalg.norm(found.bodies["Earth"][-1])
+    assert ratio == pytest.approx(0.98007916, abs=5e-9)
 
 
 @pytest.mark.usefixtures("de421")
 def test_the_sun_pulls_and_shines_from_one_place():
     around = {"gravity_of": ["moon", "sun"], "shadow_of": []}
     found = fly(10, start=GEO, device=sail(1e-3), frame="icrf", environment=around, **DE421)
-    assert np.linalg.norm(found.position[-1] - (23707713.66, -51973967.19, -120891.52)) < 0.01
+    assert np.linalg.norm(found.position[-1] - (23707713.66, -51973967.19, -120891.52)) < 8e-3  # given to 0.01
 
 
-TRANSFER = elements(24571.153, (42164.169 - 6978.137) / 49142.306, 7, 0, 178, 0)
-POINT = {"name": "point", "mu_km3_s2": 398600.4418}
-EVEN = {"kind": "circular", "obliquity_deg": 23.439}
-
-
-@pytest.mark.parametrize(
-    ("start", "strength", "days", "within"),
-    [(GEO, 1e-3, 70.1662, 1e-3), (TRANSFER, 1e-3, 108.7073, 1e-4), (TRANSFER, 5e-4, 227.289, 2e-3)],
-)
-def test_the_fastest_gain_of_energy_escapes(start, strength, days, within):
-    """From a body that is a point: what would be in the way is another test's."""
-    craft = {"device": sail(strength), "steering": locally("energy"), "light": EVEN, "body": POINT}
-    found = fly(days * 1.2, start=start, event=[{"kind": "escape", "stop": True}], **craft)
-    assert found.events[-1].time / DAY == pytest.approx(days, abs=within)
-
-
-def test_that_way_from_a_transfer_orbit_leads_into_the_ground():
-    found = fly(110, start=TRANSFER, device=sail(1e-3), steering=locally("energy"), environment=DARKLESS)
-    assert found.ended == "impact"
-
-
-def test_a_guard_keeps_the_perigee_above_what_is_allowed():
-    guarded = locally("energy", minimum_perigee_km=6700)
-    escape = [{"kind": "escape", "stop": True}]
+@pytest.mark.parametrize("frame", ["ecliptic-j2000", "icrf"])
+@pytest.mark.parametrize("pulling", [[], ["earth", "moon"], ["earth-moon"]])
+def test_planets_are_recorded_in_the_frame_of_the_flight(frame, pulling):
+    """The Earth where it stands, if it pulls alone, and where both stand together, 4,700 km off, if it does not. Rings
+    and targets, of points a degree apart, lie in the same frame."""
+    start = elements(AU / 1e3, 0.4, 5, 10, 20, 0)
+    around = {"gravity_of": pulling} if pulling else {}
+    target = {"planet": "mars"}
     found = fly(
-        150, 1e-10, 20_000, start=TRANSFER, device=sail(1e-3), steering=guarded, environment=DARKLESS, event=escape
+        300, 1e-9, 50, body="sun", start=start, frame=frame, environment=around, target=target, epoch="2026-03-20"
     )
-    assert found.ended == "escape"
-    assert np.linalg.norm(found.position, axis=1).min() > 6_699e3
-    assert found.events[-1].time / DAY < 115  # it costs little: 108.7 d without
-
-
-@pytest.mark.parametrize(
-    ("start", "goal", "apogee", "perigee"),
-    [(elements(30_000, 0.2, 20, 30, 40, 50), "apogee", 49736.2, 20257.5), (TRANSFER, "perigee", 46395.7, 9103.92)],
-)
-def test_apogee_and_perigee_rise_as_fast_as_they_can(start, goal, apogee, perigee):
-    found = fly(10, start=start, device=sail(1e-3), steering=locally(goal), environment=DARKLESS).elements
-    assert apoapsis(found)[-1] / 1e3 == pytest.approx(apogee, abs=0.2)
-    assert periapsis(found)[-1] / 1e3 == pytest.approx(perigee, abs=0.2)
-
-
-LIGHTSAIL = {"kind": "solar-sail", "area_m2": 32, "mass_kg": 4.93}
-LOW = {"kind": "circular", "altitude_km": 720, "inclination_deg": 24}
-THIN = {"kind": "exponential", "density_kg_m3": 2.0e-14, "reference_altitude_km": 720, "scale_height_km": 90}
-
-
-@pytest.mark.parametrize(
-    ("days", "more", "around", "gain"),
-    [
-        (13, {}, DARKLESS, 40.3147),
-        (13, {}, {"shadow": "cylinder"}, 28.943),
-        (13, {}, {**DARKLESS, "j2": True}, 38.545),
-        (13, {}, {"shadow": "cone", "j2": True}, 25.537),
-        (10, {}, {"shadow": "cylinder"}, 22.275),
-        (10, {"drag_area_m2": 32}, {"shadow": "cylinder", "atmosphere": THIN}, 9.659),
-        (10, {"drag_area": "attitude"}, {"shadow": "cylinder", "atmosphere": THIN}, 18.085),
-    ],
-)
-def test_a_sail_that_is_on_and_off_climbs(days, more, around, gain):
-    found = fly(days, start=LOW, device={**LIGHTSAIL, **more}, steering={"kind": "on-off"}, environment=around)
-    axis = found.elements.semi_major_axis
-    assert (axis[-1] - axis[0]) / 1e3 == pytest.approx(gain, abs=1e-3)
-
-
-@pytest.mark.parametrize(("around", "gain"), [(DARKLESS, 30.6483), ({"j2": True, "shadow": "cone"}, 18.4072)])
-def test_a_sail_at_dawn_climbs_by_its_steering(around, gain):
-    start = {"kind": "circular", "altitude_km": 1000, "inclination_deg": 99.4791298, "raan_deg": -90}
-    device = {"kind": "solar-sail", "area_m2": 80, "mass_kg": 16}
-    found = fly(10, start=start, device=device, steering=locally("energy"), environment=around)
-    axis = found.elements.semi_major_axis
-    assert (axis[-1] - axis[0]) / 1e3 == pytest.approx(gain, abs=1e-4)
-
-
-def test_a_sail_round_mars():
-    light = {"kind": "circular", "distance_au": 1.523679, "obliquity_deg": 25.19}
-    start = {"kind": "circular", "radius_km": 20427.7}
-    found = fly(10, body="mars", start=start, device=sail(1e-3), light=light, environment=DARKLESS)
-    assert np.linalg.norm(found.position[-1] - (-10560432.28, -24819239.04, 17582.93)) < 0.02
-
-
-def test_an_electric_sail_feels_the_wind_outside_the_magnetopause():
-    """The codes of the row agree to 0.7 km in the axis; where they switch differs by seconds."""
-    device = {"kind": "electric-sail", "characteristic_acceleration_mm_s2": 0.3}
-    found = fly(20, start=elements(150_000, 0.6, 30, 0, 90, 180), device=device, outputs=401)
-    assert (found.elements.semi_major_axis[-1] - 150e6) / 1e3 == pytest.approx(-16966.7, abs=1.0)
-    assert found.position[-1] / 1e3 == pytest.approx((70091.8, -163185.8, -93466.6), abs=15)
-    inside = found.environment["in_solar_wind"] == 0
-    assert 0.1 < inside.mean() < 0.4
-    assert np.all(found.thrust.magnitude[inside] == 0)
-    assert np.all(found.thrust.magnitude[~inside] > 0)
-
-
-ALTAIRA = {"name": "Altaira", "mu_km3_s2": 139348062043.343}
-STARLIGHT = {"kind": "centre", "pressure_uN_m2": 5.4026, "distance_km": 149597870.691}
-PROBE = {"kind": "solar-sail", "area_m2": 15000, "mass_kg": 500}
-STAR_AU = 149_597_870_691.0
-
-
-@pytest.mark.parametrize(
-    ("start", "steering", "years", "end", "speed", "within"),
-    [
-        (
-            elements(2 * STAR_AU / 1e3, 0.2, 10, 20, 30, 40), {"kind": "meridian", "pitch_deg": 35, "clock_deg": 90}, 5,
-            (-461975828777.9, -211299993462.5, -5806074552.4), (3027.956903, -14680.741347, -2392.444887), 0.3,
-        ),
-        (
-            {"kind": "cartesian", "position_m": [-200 * STAR_AU, 3 * STAR_AU, 0], "velocity_m_s": [30000, 0, 0]},
-            {"kind": "sun-facing"}, 20,
-            (-10930801416403.9, 447591280737.0, 0), (30254.253503, -7.111255, 0), 1.0,
-        ),
-    ],
-)  # fmt: skip
-def test_another_star_shines_with_its_own_light(start, steering, years, end, speed, within):
-    flown = {"body": ALTAIRA, "device": PROBE, "light": STARLIGHT, "start": start, "steering": steering}
-    found = fly(years * 365.25, **flown)
-    assert np.linalg.norm(found.position[-1] - end) < within
-    assert found.velocity[-1] == pytest.approx(speed, abs=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("a", "e", "argument", "low", "high", "off"),
-    [(12_000, 0.100526052, 180, 0.0992, 0.1006, 0.7), (15_000, 0.029672890, 0, 0.0290, 0.0304, 1.3)],
-)
-def test_heliotropic_dust_keeps_its_apse_line_on_the_sun_line(a, e, argument, low, high, off):
-    """C. Colombo and C. McInnes (2011): perigee with the Sun in the second, against it in the first."""
-    light, around = {"kind": "circular", "obliquity_deg": 0}, {**DARKLESS, "j2": True}
-    start = elements(a, e, 0, 0, argument, 0)
-    found = fly(365.25, 1e-11, 2001, start=start, device=sail(1e-5), light=light, environment=around)
-    shape = found.elements
-    sun = 2 * np.pi * found.time / (365.25 * DAY)
-    lag = np.angle(np.exp(1j * (shape.raan + shape.argument - np.radians(argument) - sun)))
-    assert low < shape.eccentricity.min()
-    assert shape.eccentricity.max() < high
-    assert np.degrees(np.abs(lag).max()) < off
+    sky = Sky(np.datetime64("2026-03-20", "ns"), frame)
+    for name, word in {"Venus": "venus", "Earth": "earth" if "earth" in pulling else "earth-moon"}.items():
+        assert np.linalg.norm(found.bodies[name] - sky.position(word, "sun", found.time), axis=1).max() < 1.0
+    rings = {one.name: one.points for one in found.setting.references}
+    for name, place in found.bodies.items():
+        ring = next(points for title, points in rings.items() if name in title and "target" not in title)
+        assert (
+            np.linalg.norm(ring[:, None] - place[None], axis=2).min(axis=0).max() < 0.02 * AU
+        )  # points of a ring are a degree apart
+    mars = sky.position("mars", "sun", np.linspace(0, 687 * DAY, 60))
+    aim = next(points for title, points in rings.items() if "Mars" in title)
+    assert np.linalg.norm(aim[:, None] - mars[None], axis=2).min(axis=0).max() < 0.03 * AU

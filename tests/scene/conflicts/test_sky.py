@@ -57,6 +57,16 @@ REFUSED = [
     (EARTH, law("meridian", pitch_deg=30), "steering.kind", "from the Sun line"),
     (EARTH, law("optimal", costates=[1, 1, 1]), "steering.kind", "was solved for light at the centre"),
     (OWN, law("optimal", costates=[1, 1, 1]), "steering.kind", "was solved for light at the centre"),
+    (
+        EARTH, law("smoothed-transfer", radius_au=1.5, costates=[1.0, 1.0, 1.0]), "steering.kind",
+        "was solved for light at the centre",
+    ),
+    (
+        OWN, {"start": {"kind": "displaced", "radius_au": 0.9, "elevation_deg": 10, "rate_ratio": 1}}, "start.kind",
+        "was solved for light at the centre",
+    ),
+    (EARTH, {"ensemble": [{"name": "a"}]}, "ensemble[0]", "a solar sail or an electric sail round the Sun"),
+    (SUN, {"ensemble": [{"name": "a"}], **around(gravity_of=["mars"])}, "ensemble[0]", "no gravity but the Sun's"),
     (OWN, {"start": {"kind": "heliostationary", "radius_au": 1}}, "start.kind", "was solved for light at the centre"),
     (EARTH, {"approximation": [{"kind": "first-order"}]}, "approximation[0]", "was solved for light at the centre"),
     (
@@ -113,6 +123,14 @@ def test_what_a_sky_does_not_go_together_with_is_said_where_it_stands(base, chan
 )
 def test_what_goes_together_is_taken(change):
     load_scene({**EARTH, **change})
+
+
+def test_a_kernel_that_is_not_installed_is_named_with_its_extra(monkeypatch):
+    from sailviz.scene.conflicts import moments
+
+    monkeypatch.setattr(moments, "find_spec", lambda name: None)
+    with pytest.raises(SceneError, match=r'extra "ephemeris": pip install "sailviz\[ephemeris\]"'):
+        load_scene({**EARTH, "ephemeris": "de421"})
 
 
 def test_the_series_go_by_two_names_and_are_one():

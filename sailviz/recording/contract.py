@@ -18,6 +18,9 @@
 /scene        static: what the run was made from and how far it got; gaps_s (start, end) of each span without data;
               phases, names, phases_s (start, end), NaN of one that never came, and phases_words, what held;
               `flights`, the names of all, where several were recorded together
+/filled       points between rows that lie far apart, for the eye alone: row, the number of the row before, time_s,
+              position_m and velocity_m_s (3), coast (bool), whether gravity alone leads to the next row. They have no
+              step, are no rows and are neither compared nor exported; absent where nothing was filled
 /flight/NAME  of each flight beside the first of those: the same entities below it, /flight/NAME/state and so on, with
               the numbers of its own rows, on the first one's clock; and, of the first as well, /flight/NAME/scene, with
               its `name` and `start_s`, when its own time is 0 on that clock
@@ -37,8 +40,10 @@ import rerun as rr
 from numpy.typing import ArrayLike
 
 from sailviz.run.arrays import EnsembleStatistics, Event, Run, Setting, Thrust
+from sailviz.run.filling import Points
 
 CONTRACT = "sailviz/1"
+FILLED = "/filled"
 
 
 def archetype(entity: str) -> str:
@@ -174,6 +179,17 @@ def columns(entity: str, table: dict[str, np.ndarray]) -> Iterable[rr.ComponentC
     return rr.DynamicArchetype.columns(
         archetype=archetype(entity), components={name: arrow_column(values) for name, values in table.items()}
     )
+
+
+def filled_table(points: Points) -> dict[str, np.ndarray]:
+    """The columns of /filled."""
+    return {
+        "row": points.row.astype(float),
+        "time_s": points.time,
+        "position_m": points.position,
+        "velocity_m_s": points.velocity,
+        "coast": points.coast,
+    }
 
 
 def event_columns(events: list[Event]) -> Iterable[rr.ComponentColumn]:

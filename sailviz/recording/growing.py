@@ -92,6 +92,7 @@ class GrowingRecording:
         for companion in self._overlay.companions if self._overlay else ():
             self._write_companion(companion)
         self._drawing.finish(last)
+        self._write_filled()
         self._write_scene(complete)
         self._write_sums()
         memory = self._attached.memory
@@ -111,6 +112,14 @@ class GrowingRecording:
         for file in files:
             file.publish(partial(check_whole, file=file, served=served))
         return tuple(file.path for file in files)
+
+    def _write_filled(self) -> None:
+        """The points between rows that the picture shows."""
+        points = self._drawing.points
+        if points is not None:
+            index = timelines.between_rows(self._setting, points.time)
+            table = contract.filled_table(points)
+            self.stream.send_columns(contract.FILLED, index, contract.columns(contract.FILLED, table))
 
     def abandon(self) -> None:
         """Let go of everything that is open, whatever becomes of it."""

@@ -90,6 +90,17 @@ def check_duration(run: Run) -> None:
         )
 
 
+class MixedIndex(list[rr.TimeColumn]):
+    """The timelines of drawn rows and of points between them, `filled` (n,) bool, which have no step. rows, between :
+    the timelines of either."""
+
+    def __init__(self, setting: Setting, number: np.ndarray, time: np.ndarray, filled: np.ndarray):
+        super().__init__(time_columns(setting, number, time))
+        self.filled = filled
+        self.rows = time_columns(setting, number[~filled], time[~filled])
+        self.between = between_rows(setting, time[filled])
+
+
 def between_rows(setting: Setting, time: ArrayLike) -> list[rr.TimeColumn]:
     """The columns sim_time and, where the scene has an epoch, utc, of times (n,) s between rows, which have no step."""
     return time_columns(setting, np.zeros(np.shape(time), np.int64), time)[1:]

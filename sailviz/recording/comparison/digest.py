@@ -9,6 +9,7 @@ import hashlib
 import numpy as np
 import pyarrow as pa
 
+from sailviz.recording.contract import FILLED
 from sailviz.recording.entity import ROW_ID, is_component, latest_static, strip
 from sailviz.recording.reader import FilePath, Recording, read
 
@@ -18,6 +19,7 @@ def digest(path: FilePath | Recording) -> str:
 
     Row ids, chunks, the recording's id, wall-clock timelines and the layout of the views do not count: the same scene
     run twice on one machine with one set of versions has one digest. Any bit of any number that changes, changes it.
+    Points between rows, which are there for the eye alone, do not count either.
     """
     total = hashlib.sha256()
     for name, part in sorted(digest_by_entity(path).items()):
@@ -30,10 +32,13 @@ def digest_by_entity(path: FilePath | Recording) -> dict[str, str]:
     recording = read(path)
     temporal: dict[tuple[str, tuple[str, ...]], list[pa.Table]] = {}
     static: dict[str, list[pa.RecordBatch]] = {}
+    filled = FILLED in recording
     for chunk in recording.chunks():
-        if chunk.entity_path.startswith("/__"):
+        if chunk.entity_path.startswith("/__") or chunk.entity_path == FILLED:
             continue
         batch = chunk.to_record_batch()
+        if filled and is_between(chunk.entity_path, batch.schema.names):
+            continue
         if chunk.is_static:
             static.setdefault(chunk.entity_path, []).append(batch)
             continue
@@ -49,6 +54,11 @@ def digest_by_entity(path: FilePath | Recording) -> dict[str, str]:
             state.update(f"static {name} {value.type}".encode())
             hash_values(state, value)
     return {entity: state.hexdigest() for entity, state in hashes.items()}
+
+
+def is_between(entity: str, columns: list[str]) -> bool:
+    """Whether a chunk of the picture, by the names of its columns, holds points between rows, which have no step."""
+    return entity.startswith(("/world", "/sail")) and "sim_time" in columns and "step" not in columns
 
 
 def in_order_of_time(table: pa.Table) -> pa.Table:

@@ -16,6 +16,8 @@ import pyarrow as pa
 
 from sailviz import files
 from sailviz.errors import RecordingError
+from sailviz.recording.comparison.digest import is_between
+from sailviz.recording.contract import FILLED
 from sailviz.recording.entity import (
     TIMELINES,
     Entity,
@@ -336,11 +338,12 @@ def picture_of(recording: Recording) -> Iterator[Drawn]:
     """(entity, name -> (steps, Arrow column)) of everything that is there to be looked at. Static columns have the
     step -1; those of several rows stand in order of step.
     """
-    apart = {*APART, *truth_of(recording)}
+    apart, filled = {*APART, FILLED, *truth_of(recording)}, FILLED in recording
     for name in recording.entities:
         if name in apart or name.startswith(FLIGHT):
             continue
         batches = [chunk.to_record_batch() for chunk in recording.chunks(name)]
+        batches = [each for each in batches if not (filled and is_between(name, each.schema.names))]
         temporal = [batch for batch in batches if any(line in batch.schema.names for line in TIMELINES)]
         static = [batch for batch in batches if not any(line in batch.schema.names for line in TIMELINES)]
         columns = {short(key): (np.array([-1]), value) for key, value in latest_static(static).items()}

@@ -38,7 +38,7 @@ def gap_words(setting: Setting) -> list[str]:
     size, word = clock(setting.duration)
     times = f"{len(setting.gaps)} times" if len(setting.gaps) > 1 else "once"
     missing = f"{gaps.total(setting.gaps) / size:.3g} {word.lower()}s"
-    return [f"**no data** {times}, {missing} in all: lines and curves are broken there, and what is seen is older"]
+    return [f"**no data** {times}, {missing} in all: curves break off there, a trail is dashed, what is seen is older"]
 
 
 def event_line(event: Event) -> str:

@@ -22,6 +22,7 @@ from sailviz.recording.drawing.description import WALL, about, event_line, gap_w
 from sailviz.recording.drawing.devices import drawing_of
 from sailviz.recording.drawing.ensemble_plots import plots_of_ensembles
 from sailviz.recording.drawing.ensembles import log_ensembles
+from sailviz.recording.drawing.filled import filled_story
 from sailviz.recording.drawing.flight_curves import FlightCurves, curves_beside, log_flight_curves
 from sailviz.recording.drawing.flight_words import about_together, log_now_together, span_of
 from sailviz.recording.drawing.flights import Flight, story_beside
@@ -39,6 +40,7 @@ from sailviz.recording.drawing.samples import Frame, Samples, as_flown
 from sailviz.recording.drawing.story import Arrows, Story, reach_of
 from sailviz.recording.drawing.system_view import log_system, system_words
 from sailviz.run.arrays import Event, Run, join
+from sailviz.run.filling import Points
 
 PLAY = {False: 30.0, True: 40.0}  # s that a replay takes, by whether it is a low orbit
 
@@ -57,6 +59,7 @@ class Drawing:
         self._rows: list[Run] = []
         self._numbers: list[np.ndarray] = []
         self._events: list[Event] = []
+        self.points: Points | None = None  # between rows far apart, once the run is drawn
         self.remarks: list[str] = []  # what the rows do not tell, once the run is drawn
         self._craft = drawing_of(setting.craft)
         if overlay is not None:  # the close-up is called by the flight's name
@@ -106,21 +109,24 @@ class Drawing:
         if self._overlay is not None:
             self._finish_together(self._overlay, story, last)
             return
+        story, self.points = filled_story(story)
         layout, notes, aside = self._draw(story, last)
         steady = self._curves.steady()
-        told = (*never_words(self._setting), *gap_words(self._setting), *sparse_words(story))
+        told = (*never_words(self._setting), *gap_words(self._setting), *sparse_words(story.told))
         self.remarks = [plain_words(line) for line in told]
-        sparse = [] if story.frame.low and story.frame.sparse else sparse_words(story)  # there the orbit's line says it
+        sparse = (
+            [] if story.frame.low and story.frame.sparse else sparse_words(story.told)
+        )  # there the orbit's line says it
         notes = [
             *phase_notes(self._setting, story.frame.low),
             *notes,
             *gap_words(self._setting),
             *sparse,
-            *stowed_words(story),
+            *stowed_words(story.told),
         ]
         text = about(self._setting, notes, steady, aside)
         self._picture.log_static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
-        log_now(self._picture, story)
+        log_now(self._picture, story.told)
         self._stream.send_blueprint(blueprint(layout), make_active=True, make_default=True)
 
     def _finish_together(self, overlay: Overlay, story: Story, last: Run) -> None:

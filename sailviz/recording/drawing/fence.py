@@ -45,6 +45,7 @@ class Fence:
 
 def fence_of(story: Story) -> Fence | None:
     """The wall of a flight; None where nothing pushes."""
+    story = story.told
     if story.most <= 0 or not np.any(np.linalg.norm(story.thrust, axis=1) > 0):
         return None
     count = story.once_round
@@ -64,7 +65,8 @@ def standing(story: Story, row: np.ndarray, lift: np.ndarray, strength: np.ndarr
     """The wall over rows (n,), lift (n, 3). Between rows far apart it follows the trail, its height and brightness
     going evenly from one to the other; where there is no data there is none.
     """
-    edges = set(np.searchsorted(row, story.breaks, side="right").tolist())
+    ends = np.union1d(story.breaks, story.unknown)
+    edges = set(np.searchsorted(row, ends, side="right").tolist())
     base, top, bright, rows, parts, begun, count = [], [], [], [], [], 0, 0
     for k in range(len(row)):
         if k in edges and k > 0:
@@ -128,6 +130,7 @@ def fence_spans(story: Story) -> dict[str, Span]:
 
 def log_fence(picture: Picture, story: Story, fence: Fence) -> None:
     """Write /world/fence."""
+    story = story.told
     if story.ring:
         log_ring(picture, fence)
         return

@@ -22,8 +22,8 @@ from sailviz.recording.drawing.phrases import push_unit
 from sailviz.recording.drawing.plot_column import SHOWN_FROM, PlotView, corner, nice_range
 from sailviz.recording.drawing.plots import Plot
 from sailviz.recording.drawing.samples import SPARSE
-from sailviz.recording.drawing.ways import revolutions
 from sailviz.run.arrays import Run
+from sailviz.run.filling import revolutions
 from sailviz.run.moments import run_at
 
 QUANTITIES = 2  # that vary most

@@ -45,6 +45,7 @@ def clear_of_one_another(place: np.ndarray, gap: float) -> list[int]:
 
 def log_ghosts(picture: Picture, story: Story, size: float) -> None:
     """Write /world/ghosts. size : of the craft, view units."""
+    story = story.told
     rows = ghost_rows(story)
     rows = rows[~story.stowed[rows]]
     if len(rows) == 0 or not (story.craft.facing or story.craft.slanted):

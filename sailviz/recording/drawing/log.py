@@ -11,6 +11,7 @@ import rerun as rr
 from numpy.typing import ArrayLike
 
 from sailviz.recording.drawing.style import ANCHOR, points, rgba
+from sailviz.recording.timelines import MixedIndex
 from sailviz.shapes.primitives import Trimesh, vertex_normals
 
 Color = Sequence[int]  # red, green, blue and perhaps alpha, 0 to 255
@@ -33,6 +34,14 @@ class ArrowBatch:
         return self._array
 
 
+def taken(column: rr.ComponentColumn, rows: np.ndarray) -> rr.ComponentColumn:
+    """Some rows of a column."""
+    lists = column.as_arrow_array().take(pa.array(rows))
+    return rr.ComponentColumn(
+        column.component_descriptor(), ArrowBatch(lists.flatten()), lengths=lists.value_lengths().to_numpy()
+    )
+
+
 class Picture:
     """Writes to a stream. Style is static, data have rows: a static value would hide the rows of the same component."""
 
@@ -44,8 +53,14 @@ class Picture:
         self._stream.log(path, *what, static=True)
 
     def log_columns(self, path: str, index: Index, columns: Iterable[Any]) -> None:
-        """Columns of components, a value for each row of the index."""
-        self._stream.send_columns(path, index, columns)
+        """Columns of components, a value for each row of the index; points between rows in a chunk of their own."""
+        if not isinstance(index, MixedIndex):
+            self._stream.send_columns(path, index, columns)
+            return
+        given = list(columns)
+        for times, some in ((index.rows, ~index.filled), (index.between, index.filled)):
+            if some.any():
+                self._stream.send_columns(path, times, [taken(column, np.flatnonzero(some)) for column in given])
 
     def log_mesh(self, path: str, mesh: Trimesh, color: Color, shaded: bool = True, side: str | None = None) -> None:
         """A mesh of one colour, `side` "front" or "back" alone if given. Unshaded is flat: what glows, and air."""

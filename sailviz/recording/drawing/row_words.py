@@ -32,7 +32,9 @@ def sparse_words(story: Story) -> list[str]:
     bent = "by the thrust" if story.most > 0 else "to meet the next row"
     how = f", bent {bent}, and" if ways.bent else " and"
     words = f"{begin}: between them the trail follows gravity{how} is no data"
-    if ways.open:
+    if story.unknown:
+        words += f"; {times(len(story.unknown))} no way is known to the next row, and it is dashed"
+    elif ways.open:
         words += f"; {times(len(ways.open))} that does not lead to the next row, whose orbit is drawn instead"
     return [words]
 

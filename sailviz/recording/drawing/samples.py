@@ -147,10 +147,17 @@ class Samples:
     primer_rtn: np.ndarray | None  # unit vector of an optimal transfer's primer
     earth_rotation: np.ndarray | None  # (n,) rad, as drawn
     own_place: np.ndarray  # (n,) bool, whether the craft is drawn where it was
+    filled: np.ndarray | None = None  # (n,) bool, which are points between rows; None where there are none
 
     @staticmethod
-    def of(run: Run, number: np.ndarray, frame: Frame, before: ArrayLike = (-np.inf, -np.inf)) -> Samples:
-        """before : s, times of the two rows drawn before these."""
+    def of(
+        run: Run,
+        number: np.ndarray,
+        frame: Frame,
+        before: ArrayLike = (-np.inf, -np.inf),
+        filled: np.ndarray | None = None,
+    ) -> Samples:
+        """before : s, times of the two rows drawn before these; filled (n,) bool, which are points between rows."""
         position, velocity = run.position, run.velocity
         axes = rtn(position, velocity)
         normal_rtn, velocity_rtn = to_frame(axes, run.attitude.normal), to_frame(axes, unit(velocity))
@@ -173,7 +180,7 @@ class Samples:
         return Samples(
             run=run,
             number=number,
-            index=timelines.time_columns(run.setting, number, run.time),
+            index=index_of(run.setting, number, run.time, filled),
             position=position / frame.unit,
             axes=axes,
             velocity=velocity / frame.unit,
@@ -183,6 +190,7 @@ class Samples:
             primer_rtn=primer_rtn,
             earth_rotation=turned,
             own_place=close,
+            filled=filled,
         )
 
     def __len__(self) -> int:
@@ -217,7 +225,15 @@ class Samples:
 
     def index_of(self, some: slice | np.ndarray) -> list[rr.TimeColumn]:
         """The timelines of some of the rows."""
-        return timelines.time_columns(self.run.setting, self.number[some], self.run.time[some])
+        filled = None if self.filled is None else self.filled[some]
+        return index_of(self.run.setting, self.number[some], self.run.time[some], filled)
+
+
+def index_of(setting: Setting, number: np.ndarray, time: np.ndarray, filled: np.ndarray | None) -> list[rr.TimeColumn]:
+    """The timelines of rows, or of rows and points between them."""
+    if filled is None or not filled.any():
+        return timelines.time_columns(setting, number, time)
+    return timelines.MixedIndex(setting, number, time, filled)
 
 
 def slowed(run: Run, frame: Frame) -> tuple[np.ndarray, np.ndarray]:

@@ -59,6 +59,14 @@ class Story:
     events: tuple[Event, ...]
     reach: float  # S: the largest distance from the centre that is drawn
     beside: Arrows | None = None  # how long arrows are where several flights are drawn
+    rows: Story | None = None  # the rows alone, where these samples hold points between them as well
+    fine: bool = False  # of the rows alone: the way between them is drawn wherever there are points on it
+    unknown: tuple[int, ...] = ()  # of the rows alone: those from which no way is known to the next
+
+    @property
+    def told(self) -> Story:
+        """The rows alone."""
+        return self.rows or self
 
     @property
     def setting(self) -> Setting:
@@ -128,7 +136,7 @@ class Story:
     @cached_property
     def ways(self) -> Ways:
         """How the trail gets from row to row where these lie far apart."""
-        return ways_of(self.samples, self.frame, self.breaks)
+        return ways_of(self.samples, self.frame, self.breaks, fine=self.fine)
 
     @cached_property
     def thrust(self) -> np.ndarray:

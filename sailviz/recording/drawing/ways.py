@@ -15,12 +15,11 @@ from sailviz.elements import state
 from sailviz.frames import rtn
 from sailviz.recording.drawing.samples import SMOOTH, SPARSE, Frame, Samples
 from sailviz.run.arrays import Run
+from sailviz.run.filling import bent, even_shares, revolutions
 
 COARSE = 2 / SMOOTH  # revolutions
 MEETS = 0.5  # of the distance: what a cubic may still add to Kepler's motion
-SCAN, LOOKS = 65, 3  # times at which the swept angle is looked up, and how often for an orbit that turns sharply
 BENT = 1e-4  # of the distance: what is added is the thrust's
-MOST = 4 * SMOOTH  # points between two rows
 
 
 @dataclass(frozen=True)
@@ -36,14 +35,14 @@ class Ways:
     open: dict[int, np.ndarray]
 
 
-def ways_of(samples: Samples, frame: Frame, breaks: np.ndarray) -> Ways:
-    """Of all stretches of more than SPARSE revolutions, or in which a piece of the cubic would be longer than COARSE;
-    those without data left out."""
+def ways_of(samples: Samples, frame: Frame, breaks: np.ndarray, fine: bool = False) -> Ways:
+    """Of all stretches of more than SPARSE revolutions, or in which a piece of the cubic would be longer than COARSE,
+    or fine : half of that; those without data left out."""
     run = samples.run
     if frame.sparse or len(run) < 2:
         return Ways({}, 0, 0, {})
     swept = revolutions(run, frame.mu)
-    rows = np.setdiff1d(np.flatnonzero(swept > min(SPARSE, COARSE * frame.smooth)), breaks)
+    rows = np.setdiff1d(np.flatnonzero(swept > min(SPARSE, COARSE * (0.5 if fine else frame.smooth))), breaks)
     if not len(rows):
         return Ways({}, 0, 0, {})
     step = run.time[rows + 1] - run.time[rows]
@@ -53,50 +52,14 @@ def ways_of(samples: Samples, frame: Frame, breaks: np.ndarray) -> Ways:
     meets = share < MEETS  # false for NaN
     lines = {}
     for row, h, d, w in zip(rows[meets].tolist(), step[meets], off[meets], turned[meets], strict=True):
-        s = even_shares(run, row, float(h), float(swept[row]), frame.mu)
-        places = fly(run, row, s * h, frame.mu)
-        places += (3 * s**2 - 2 * s**3)[:, None] * d + (s**3 - s**2)[:, None] * h * w
+        s = even_shares(run, row, float(h), frame.mu)
+        places, _ = bent(run, row, s, d, w, frame.mu)
         places[[0, -1]] = run.position[[row, row + 1]]
         lines[row] = places / frame.unit, s
     lost = zip(rows[~meets].tolist(), step[~meets].tolist(), strict=True)
     orbits = {row: arc(run, row + 1, run.position[row], h, frame) for row, h in lost}
     far = int(np.count_nonzero(swept[rows[meets]] > SPARSE))
     return Ways(lines, far, int(np.count_nonzero(share[meets] > BENT)), orbits)
-
-
-def revolutions(run: Run, mu: float) -> np.ndarray:
-    """(n - 1,) from row to row: by the faster of the two rows' pace, or by the mean one of their orbit."""
-    r2 = np.sum(run.position**2, axis=1)
-    rate = np.linalg.norm(np.cross(run.position, run.velocity), axis=1) / r2 / (2 * np.pi)
-    a = run.elements.semi_major_axis
-    with np.errstate(invalid="ignore", divide="ignore"):
-        mean = np.where((a > 0) & np.isfinite(a), np.sqrt(mu / np.abs(a) ** 3), 0.0) / (2 * np.pi)
-    rate = np.maximum(rate, mean)
-    return np.asarray(np.maximum(rate[1:], rate[:-1]) * np.diff(run.time))
-
-
-def fly(run: Run, row: int, times: np.ndarray, mu: float) -> np.ndarray:
-    """Places (p, 3) m on the orbit of a row, times (p,) s after it."""
-    count = len(times)
-    places, _ = two_body.advance(
-        np.tile(run.position[row], (count, 1)), np.tile(run.velocity[row], (count, 1)), times, mu
-    )
-    return places
-
-
-def even_shares(run: Run, row: int, step: float, swept: float, mu: float) -> np.ndarray:
-    """Shares of the time (p,), 0 to 1, at which the angle swept from the centre is nearly even."""
-    s = np.linspace(0, 1, SCAN)
-    for _ in range(LOOKS):
-        out = fly(run, row, s * step, mu)
-        out /= np.linalg.norm(out, axis=1, keepdims=True)
-        angle = np.arctan2(np.linalg.norm(np.cross(out[1:], out[:-1]), axis=1), np.sum(out[1:] * out[:-1], axis=1))
-        along = np.concatenate([[0.0], np.cumsum(angle)]) + 1e-3 * s  # a fall straight down sweeps nothing
-        if angle.max() < COARSE * 2 * np.pi:
-            break
-        s = np.interp(np.linspace(0, along[-1], SCAN), along, s)  # closer where it turns fast
-    count = int(np.clip(np.ceil(SMOOTH * along[-1] / (2 * np.pi)), 4, MOST)) + 1
-    return np.asarray(np.interp(np.linspace(0, along[-1], count), along, s))
 
 
 def arc(run: Run, row: int, start: np.ndarray, gap: float, frame: Frame) -> np.ndarray:

@@ -111,6 +111,25 @@ def trail(f, entity):
         assert hue(f.picture.color(entity, "LineStrips3D:colors")[0]) in ("cyan", "blue")
 
 
+def unknown(f, entity):
+    """Dashes from the last row before each stretch without data, or without a known way, to the first one after it,
+    each shorter than the stretch; none where there are rows close to one another."""
+    dashes = [np.asarray(dash) for dash in f.picture.line(entity, 0)]
+    place = f.truth.place / f.truth.length
+    rows, begins = [], True
+    for dash in dashes:
+        if begins:
+            rows.append(int(np.argmin(np.linalg.norm(place - dash[0], axis=1))))
+            same_place(dash[0], f.truth.place[rows[-1]], f.truth.length)
+        begins = bool(np.linalg.norm(place[rows[-1] + 1] - dash[-1]) < 1e-6 * f.truth.reach)
+        assert begins or len(dash) == 4
+    assert begins, "the last dash ends nowhere"
+    assert set(f.truth.breaks) <= set(rows), "a gap is not dashed"
+    assert len(dashes) >= 4 * len(rows), "a line, and no dashes"
+    filled = f.truth.recording["/filled"]["row"] if "/filled" in f.truth.recording else []
+    assert not set(rows) & set(np.asarray(filled, int)), "dashes where the way is filled"
+
+
 def between_rows(f, points, first, last):
     """Points between two rows lie near the orbit of one of them."""
     points = points * f.truth.length

@@ -76,6 +76,7 @@ SYSTEM = (
     Claim("/world/ecliptic", f"{MESH} {MOVE}", "z = 0", INERTIAL, "1.10 S", system.ecliptic),
     Claim("/world/sun_line", LINE, "/state position_m", INERTIAL, "1/L", system.sun_line),
     Claim("/world/height", LINE, "/state position_m", INERTIAL, "1/L", system.height_line),
+    Claim("/world/trail/unknown", LINE, "/state position_m, gaps_s", INERTIAL, "1/L", system.unknown),
     Claim("/world/trail/recent", LINE, "/state position_m", INERTIAL, "1/L", system.trail),
     Claim("/world/trail/past", LINE, "/state position_m", INERTIAL, "1/L", system.trail),
     Claim("/world/trail/future", LINE, "/state position_m", INERTIAL, "1/L", system.trail),

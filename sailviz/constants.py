@@ -29,4 +29,5 @@ SPEED_OF_LIGHT = 299_792_458.0  # m/s: the definition of the metre
 GRAVITY_AT_1_AU = MU_SUN / AU**2  # m/s2, the Sun's pull at 1 au, 5.930083519e-3
 WIND_POTENTIAL = 1_000.0  # V, potential of the solar-wind ions: thesis, (3.41)
 WIND_PRESSURE = 2.0e-9  # Pa, mean solar-wind dynamic pressure at 1 au: thesis, (3.41)
+STEFAN_BOLTZMANN = 5.670_374_419e-8  # W/m2/K4: CODATA 2018, exact to its digits
 SOLAR_IRRADIANCE = 1_360.96  # W/m2, mean of the PMOD/WRC composite 1980-2023 at 1 au

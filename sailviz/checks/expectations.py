@@ -302,6 +302,7 @@ def _row_at(run: Run, event: Event) -> Run:
         devices={name: row(device) for name, device in run.devices.items()},
         elements=elements(position, velocity, run.setting.body.mu),
         environment={name: values[nearest] for name, values in run.environment.items()},
+        film={name: values[nearest] for name, values in run.film.items()},
         bodies={},
         events=(),
     )

@@ -110,6 +110,7 @@ def model(
     control_law: np.ndarray[Any, Any] | None = None,
     sky: dict[str, Sequence[float]] | None = None,
     sky_table: np.ndarray[Any, Any] | None = None,
+    film: Sequence[float] = (),
     user_steering: int = 0,
     user_force: int = 0,
 ) -> Model:
@@ -120,7 +121,8 @@ def model(
     their order; table (k, 7) of `attitude.table`; air_table, plasma_table of the environment's modules; steer_as : the
     sail for which a primer law steers, id and parameters. The callbacks of steering and device belong to the kinds
     CALLED; forces add up; burns : one of them burns propellant. sky : Parameters of the sky's parts by name, `sky`,
-    `magnetosphere`, `by_light`, `pushed`; sky_table of `environment.sky.packed`.
+    `magnetosphere`, `by_light`, `pushed`; sky_table of `environment.sky.packed`; film : Numbers of
+    `propulsion.film_ageing`, of a film that ages or whose temperature is asked for.
     """
     parameters = np.zeros(1, PARAMETERS)
     p = parameters[0]
@@ -135,6 +137,7 @@ def model(
         "solar_level": solar_level,
         "air": air,
         "plasma": plasma,
+        "film": film,
     }
     parts |= sky or {}
     pushed = int(parts["pushed"][0]) if "pushed" in parts else NO_DEVICE

@@ -34,14 +34,15 @@ OF_LOW_ORBIT = (
     "tether_tilt",
 )  # fmt: skip
 OF_SKY = ("sun_distance", "moon_distance")  # known to sky_quantities
-QUANTITIES = (*OF_STATE, *OF_CRAFT, *OF_LOW_ORBIT, *OF_SKY)
+OF_FILM = ("dose", "film_temperature")  # known to film_quantities
+QUANTITIES = (*OF_STATE, *OF_CRAFT, *OF_LOW_ORBIT, *OF_SKY, *OF_FILM)
 (
     TIME, RADIUS, ALTITUDE, ELEVATION, HEIGHT, LONGITUDE, SPEED, RADIAL_SPEED, TRANSVERSE_SPEED, FLIGHT_PATH_ANGLE,
     ENERGY, ANGULAR_MOMENTUM, ANGULAR_MOMENTUM_Z, MASS, SEMI_MAJOR_AXIS, ECCENTRICITY, INCLINATION, RAAN, TRUE_ANOMALY,
     PERIAPSIS, APOAPSIS, PERIGEE_ALTITUDE, APOGEE_ALTITUDE, MEAN_ALTITUDE, THRUST_FACTOR,
     PITCH, CONE, CLOCK, THRUST_ACCELERATION,
     SUNLIT_FRACTION, AIR_DRAG, PLASMA_DENSITY, PLASMA_FORCE, TETHER_VOLTAGE, TETHER_CURRENT, TETHER_POWER, TETHER_TILT,
-    SUN_DISTANCE, MOON_DISTANCE,
+    SUN_DISTANCE, MOON_DISTANCE, DOSE, FILM_TEMPERATURE,
 ) = range(len(QUANTITIES))  # fmt: skip
 MAGNETOPAUSE = len(QUANTITIES)  # how far outside it the craft is, m: no quantity of a scene, but of "wind on"
 INVERSE = ("semi_major_axis", "apoapsis", "apogee_altitude")  # watched as -1 / (distance from the centre, m)

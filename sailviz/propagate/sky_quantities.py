@@ -78,10 +78,9 @@ def of_sky(number, t, x, y, z, vx, vy, vz, m, factor, p, tables):
     return drag, drag
 
 
-def _of_sky(time, state, parameters, own, number, out):
-    p, y, found = record_at(parameters, PARAMETERS), array_at(state, STATE), array_at(out, 4)
-    tables = array_at(p.places.address, p.places.end)
-    x, yy, z, vx, vy, vz, m, factor = y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7]
+@called
+def under_a_sky(number, time, x, yy, z, vx, vy, vz, m, factor, p, tables):
+    """(value, its size) of any quantity but those of a film."""
     held = p.held.active
     p.held.active = 0  # a row is looked up where it is, whatever side the step keeps to
     shaded = number == SUNLIT_FRACTION and p.sky.shadow != NO_SHADOW
@@ -97,6 +96,13 @@ def _of_sky(time, state, parameters, own, number, out):
     else:
         value, size = of_low_orbit(number, time, x, yy, z, vx, vy, vz, m, factor, p)
     p.held.active = held
+    return value, size
+
+
+def _of_sky(time, state, parameters, own, number, out):
+    p, y, found = record_at(parameters, PARAMETERS), array_at(state, STATE), array_at(out, 4)
+    tables = array_at(p.places.address, p.places.end)
+    value, size = under_a_sky(number, time, y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], p, tables)
     found[0], found[1], found[2], found[3] = value, size, 0.0, 0.0
 
 

@@ -8,6 +8,8 @@
               that of the first sail, or without one of the first device; the cone angle is that of the whole thrust
 /elements     semi_major_axis_m, eccentricity, inclination_rad, raan_rad, argument_rad, true_anomaly_rad
 /environment  whatever acted, the unit in each name, (n,) or (n, 3); absent where nothing did
+/film         of a solar sail whose film ages or whose temperature is told: dose_yr, temperature_K, b1, b2, b3; absent
+              where nothing of it is asked, b1 to b3 and dose of a film that does not age; NaN where it is not known
 /phases       number of the phase, 1 for the first; absent in flights without. Their names and spans stand in /scene
 /approximation  NAME_position_m (3) and NAME_error_m of every other answer that was asked for; absent without any
 /ensemble/NAME  of every ensemble, at times of some of the rows: nominal_position_m and mean_position_m (3),
@@ -99,6 +101,7 @@ def tables(run: Run) -> dict[str, dict[str, np.ndarray]]:
             "true_anomaly_rad": elements.true_anomaly,
         },
         "/environment": dict(run.environment),
+        "/film": dict(run.film),
         "/phases": {"number": 1.0 + run.setting.phase_of(run.time)} if run.setting.phases else {},
         "/approximation": {
             key: value

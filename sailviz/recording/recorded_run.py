@@ -52,6 +52,7 @@ def run_of(recording: Recording) -> Run:
         environment={} if acted is None else {name: acted[name] for name in acted},
         bodies={},
         devices=devices_of(recording),
+        film=dict(recording["/film"]) if "/film" in recording else {},
         events=tuple(Event(event.name, event.time, event.state) for event in recording.events),
     )
 

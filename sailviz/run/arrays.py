@@ -222,6 +222,7 @@ class Run:
     bodies: dict[str, np.ndarray]  # name -> (n, 3) m from the central body, e.g. "Earth", or "Sun" seen from the Earth
     approximations: dict[str, np.ndarray] = field(default_factory=dict)  # name -> (n, 3) m, another answer to the same
     devices: dict[str, Thrust] = field(default_factory=dict)  # name -> what each device in a list of them does
+    film: dict[str, np.ndarray] = field(default_factory=dict)  # of a sail that ages or gets hot: name with unit -> (n,)
     events: tuple[Event, ...] = ()
     ended: str = field(default="")  # why a run stopped before its duration, "" if it did not
 
@@ -251,6 +252,7 @@ COLUMNS = (  # fields of a Run that have a row for each time
     "bodies",
     "approximations",
     "devices",
+    "film",
 )
 
 

@@ -57,6 +57,7 @@ def run_at(run: Run, times: np.ndarray) -> Run:
             column("true_anomaly_rad", e.true_anomaly),
         ),
         environment={name: column(name, values) for name, values in run.environment.items()},
+        film={name: column(name, values) for name, values in run.film.items()},
         bodies={name: column("velocity_m_s", place) for name, place in run.bodies.items()},  # smooth as velocities are
         approximations={},
         events=(),

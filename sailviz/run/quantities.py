@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from sailviz.compiled import Late
+from sailviz.constants import YEAR
 from sailviz.elements import apoapsis
 from sailviz.run import formulas
 from sailviz.run.arrays import Run
@@ -81,6 +82,11 @@ def _acted(name: str) -> Value:
     return lambda run: np.asarray(run.environment.get(name, np.full(len(run), np.nan)), float)
 
 
+def _of_film(name: str, unit: float = 1.0) -> Value:
+    """A column of the sail's film; NaN where the run has none."""
+    return lambda run: unit * np.asarray(run.film.get(name, np.full(len(run), np.nan)), float)
+
+
 def _mean_altitude(run: Run) -> np.ndarray:
     """Without the swing that an oblate planet gives it, where the run knows that; else of the semi-major axis. NaN on
     an open orbit, which has no mean."""
@@ -139,5 +145,7 @@ VALUES: dict[str, Value] = {
     "thrust_voltage": _acted("thrust_voltage_V"),
     "wind_pressure": _acted("solar_wind_pressure_Pa"),
     "electrochromic_state": _acted("electrochromic_state"),
+    "dose": _of_film("dose_yr", YEAR),
+    "film_temperature": _of_film("temperature_K"),
     "saturated": _acted("saturated"),  # of an ensemble: the share of time at the largest voltage
 }

@@ -18,6 +18,7 @@ from sailviz.scene.values import (
     Power,
     Pressure,
     Section,
+    Temperature,
     Thickness,
     Time,
     Voltage,
@@ -114,9 +115,20 @@ class ElectrochromicControl(Section):
     fraction: Annotated[float, Field(gt=0, le=1)] = 0.007
 
 
+class Ageing(Section):
+    """How a film ages with its dose of sunlight: the factor by which it mirrors less, over 1 + factor, and its front
+    radiates more in the end; the dose in which half of that happens, and the one that it has at the start, in time of
+    full sunlight at 1 au."""
+
+    factor: Annotated[float, Field(ge=0, le=1)]
+    half_dose: Annotated[Time, POSITIVE] = 15_778_800.0
+    dose: Annotated[Time, Field(ge=0)] = 0.0
+
+
 class SolarSail(Device):
     """A solar sail. Its strength: characteristic acceleration, lightness number, or area with mass, of a flat one; or
-    its shape with mass, the film's back and its roll about the normal beside."""
+    its shape with mass, the film's back and its roll about the normal beside. ageing : of its film; hottest : what
+    that bears."""
 
     kind: Literal["solar-sail"]
     film: Literal["ideal", "eta-perfect", "jpl-1978", "jpl-2015"] | FilmCoefficients | FilmOptics = "ideal"
@@ -127,12 +139,16 @@ class SolarSail(Device):
     shape: Shapes | None = None
     back: Literal["same", "black"] | FilmCoefficients | FilmOptics | None = None
     roll: Angle | None = None
+    ageing: Ageing | None = None
+    hottest: Annotated[Temperature, POSITIVE] | None = None
 
     @model_validator(mode="after")
     def _strength(self) -> Self:
         one_of(self, "characteristic_acceleration", "lightness_number", "area+mass", "shape+mass")
-        if self.shape is None and (self.back is not None or self.roll is not None):
-            raise wrong(f"{'roll' if self.back is None else 'back'} belongs to a sail with a shape")
+        if self.shape is None and self.roll is not None:
+            raise wrong("roll belongs to a sail with a shape")
+        if self.shape is None and self.back is not None and self.hottest is None and self.ageing is None:
+            raise wrong("back belongs to a sail with a shape, or whose film ages or has a hottest temperature")
         if self.shape is not None and self.back is None:
             raise wrong('a sail with a shape needs its back: "same", "black", b1, b2, b3 or optics of its own')
         return self

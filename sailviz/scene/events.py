@@ -20,6 +20,7 @@ from sailviz.scene.values import (
     SpecificAngularMomentum,
     SpecificEnergy,
     Speed,
+    Temperature,
     Time,
     Voltage,
     wrong,
@@ -77,6 +78,8 @@ class Crossing(Section):
     tether_voltage: Voltage | None = None
     tether_power: Annotated[Power, POSITIVE] | None = None
     tether_tilt: Annotated[Angle, NOT_NEGATIVE] | None = None
+    dose: Annotated[Time, POSITIVE] | None = None
+    film_temperature: Annotated[Temperature, POSITIVE] | None = None
     sense: Sense = "both"
 
     always: ClassVar[tuple[str, ...]] = ()  # said in the resolved scene where they are not given, too
@@ -154,13 +157,16 @@ _WORDS: dict[str, Callable[[float], str]] = {
     "current": lambda value: f"{value * 1e3:.6g} mA",
     "voltage": lambda value: f"{value:.6g} V",
     "power": lambda value: f"{value:.6g} W",
+    "temperature": lambda value: f"{value:.6g} K",
 }
 
 
 class Watched(Crossing):
     """An event to find: of a kind, or where a quantity crosses a value. `stop` ends the run there."""
 
-    kind: Literal["radius", "altitude", "mean-altitude", "periapsis", "apoapsis", "node", "escape"] | None = None
+    kind: (
+        Literal["radius", "altitude", "mean-altitude", "periapsis", "apoapsis", "node", "escape", "too-hot"] | None
+    ) = None
     name: str | None = None
     stop: bool = False
 

@@ -66,6 +66,8 @@ DIMENSIONS = {
     "wind_pressure": "pressure",
     "electrochromic_state": "none",
     "saturated": "none",
+    "dose": "time",
+    "film_temperature": "temperature",
 }
 
 ON_A_CIRCLE = ("raan", "true_anomaly", "clock")  # equal modulo a turn; longitude is not: it counts revolutions

@@ -17,8 +17,10 @@ from sailviz.constants import ATOMIC_MASS, AU, MU_SUN, RADIATION_PRESSURE, STAND
 from sailviz.environment import ionosphere
 from sailviz.propagate import dynamics, events
 from sailviz.propagate import low_orbit_callback as low_orbit
+from sailviz.propagate.film_callback import film_thrust
+from sailviz.propagate.quantity_callback import FILM_TEMPERATURE
 from sailviz.propulsion import electric_sail, plasma_brake, solar_sail, thruster
-from sailviz.propulsion.solar_sail import FILMS, Film
+from sailviz.propulsion.solar_sail import FILMS, OPTICS, Film
 from sailviz.run.arrays import Body, Craft, CraftPart
 from sailviz.run.devices import LABELS
 from sailviz.scene.device import Device as DeviceSection
@@ -69,8 +71,8 @@ def film_of(scene: Scene) -> Film:
 
 def _film(device: SolarSail) -> Film:
     given = device.film
-    if isinstance(given, str):
-        return FILMS[given]
+    if isinstance(given, str):  # the printed numbers; of a film that ages those of its optics, which change
+        return FILMS[given] if device.ageing is None else Film.from_optics(*OPTICS[given])
     values = given.model_dump()
     return Film(**values) if "b1" in values else Film.from_optics(**values)
 
@@ -123,6 +125,8 @@ def _solar_sail(device: SolarSail, scene: Scene, design: Any) -> LoweredDevice:
     film = _film(device)
     strength = _film_strength(device, scene, design) * AU**2 / film.total
     numbers = solar_sail.Parameters(strength, film.b1, film.b2, film.b3)
+    if device.ageing is not None:
+        return LoweredDevice(dynamics.SOLAR_SAIL, numbers, film_thrust())
     if device.shape is None:
         return LoweredDevice(dynamics.SOLAR_SAIL, numbers)
     from sailviz.simulation.sail_shape import thrust_of_shape  # trimesh, which flat sails do without
@@ -130,6 +134,12 @@ def _solar_sail(device: SolarSail, scene: Scene, design: Any) -> LoweredDevice:
     pressure = radiation_pressure(scene)
     assert pressure is not None  # as for every sail that does not say its strength
     return LoweredDevice(dynamics.SOLAR_SAIL, numbers, thrust_of_shape(scene, pressure, has_sky(scene)))
+
+
+def _too_hot(device: SolarSail, body: Body) -> list[Happening]:
+    if device.hottest is None:
+        return []
+    return [("too-hot", (events.QUANTITY + FILM_TEMPERATURE, device.hottest, 1, events.RECORD))]
 
 
 def _solar_sail_words(device: SolarSail) -> Words:
@@ -257,6 +267,7 @@ DEVICES: dict[type[Section], Device[Any]] = {  # the functions of each record ta
         _solar_sail,
         words=_solar_sail_words,
         size=_solar_sail_size,
+        events=_too_hot,
         sail=_film,
         strength=_film_strength,
     ),

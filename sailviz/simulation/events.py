@@ -8,7 +8,15 @@ from typing import TYPE_CHECKING
 
 from sailviz.propagate import events
 from sailviz.propagate.callbacks import Callback
-from sailviz.propagate.quantity_callback import INVERSE, MAGNETOPAUSE, QUANTITIES, quantity_callback
+from sailviz.propagate.film_quantities import film_quantities
+from sailviz.propagate.quantity_callback import (
+    FILM_TEMPERATURE,
+    INVERSE,
+    MAGNETOPAUSE,
+    OF_FILM,
+    QUANTITIES,
+    quantity_callback,
+)
 from sailviz.propagate.sky_quantities import sky_quantities
 from sailviz.propulsion.devices import PLASMA_BRAKE
 from sailviz.scene.phases import Phase, Until, end_of, until_of
@@ -23,6 +31,7 @@ if TYPE_CHECKING:
 
 ANGLES_ON_A_CIRCLE = (*ON_A_CIRCLE, "longitude")  # a direction, where it is watched: it does not count revolutions
 
+TOO_HOT = "too-hot"
 _SENSE = {"up": 1, "down": -1, "both": 0}
 
 
@@ -31,7 +40,7 @@ class Watching:
     """How a kind of event is watched."""
 
     function: Callable[[Scene], int]  # of `propagate.events`, whose level is passed
-    level: Callable[[Watched, Body], float] = lambda event, body: 0.0
+    level: Callable[[Watched, Body], float] = lambda event, body: 0.0  # of those that the event itself gives
     sense: int | None = None  # in which the level is passed: 1 up, -1 down; None as the event says
 
 
@@ -59,6 +68,7 @@ EVENTS = {
     "apoapsis": Watching(_plainly(events.APSIS), sense=-1),
     "node": Watching(_plainly(events.NODE)),
     "escape": Watching(_plainly(events.ENERGY), sense=1),
+    "too-hot": Watching(_plainly(events.QUANTITY + FILM_TEMPERATURE), sense=1),
 }
 
 
@@ -82,8 +92,12 @@ def watched(scene: Scene, body: Body, phase: Phase | None = None) -> tuple[tuple
             continue
         kind = EVENTS[event.kind]
         sense = _SENSE[event.sense] if kind.sense is None else kind.sense
-        rows.append((kind.function(scene), kind.level(event, body), sense, action))
+        level = getattr(scene.device, "hottest", 0.0) if event.kind == TOO_HOT else kind.level(event, body)
+        rows.append((kind.function(scene), level, sense, action))
+    asked = any(event.kind == TOO_HOT for event in scene.event)  # which says by itself whether the run ends there
     for name, row in device_of(scene).events(scene.device, body):
+        if name == TOO_HOT and asked:
+            continue
         names.append(name)
         rows.append(row)
     if magnetosphere_of(scene) != "none":
@@ -117,6 +131,11 @@ def quantities_watched(scene: Scene, device: int, phase: Phase | None = None) ->
     until = None if phase is None else until_of(phase)
     if isinstance(until, Until) and until.quantity is not None:
         stems.add(until.quantity)
-    if has_sky(scene) and (stems or magnetosphere_of(scene) != "none"):
+    if getattr(scene.device, "hottest", None) is not None:
+        stems.add("film_temperature")
+    blown = magnetosphere_of(scene) != "none"
+    if any(stem in OF_FILM for stem in stems):
+        return film_quantities(not blown and all(stem in OF_FILM for stem in stems), has_sky(scene))
+    if has_sky(scene) and (stems or blown):
         return sky_quantities()
     return quantity_callback(stems, device == PLASMA_BRAKE) if stems else None

@@ -15,7 +15,7 @@ INTEGRATORS = {COLLOCATION: collocation, DOP853: dop853, GAUSS_JACKSON: gauss_ja
 
 def begun(p: Plan, finer: float = 1.0) -> Any:
     """An integration at the start of a plan. finer : shortens steps that are equal, beyond what the tolerance asks."""
-    given = (p.begin, p.position, p.velocity, p.mass, len(p.names))
+    given = (p.begin, p.position, p.velocity, p.seventh, len(p.names))
     if p.choice.integrator == GAUSS_JACKSON:
         state: Any = gauss_jackson.start(*given, refinement=finer * refinement_for(p.scene.propagation.tolerance))
     else:

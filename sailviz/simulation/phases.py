@@ -201,7 +201,7 @@ def _columns(legs: list[Flown], setting: Setting) -> dict[str, np.ndarray]:
     """Name -> values of a row without data, for every column of the environment that any phase has."""
     found: dict[str, np.ndarray] = {}
     for leg in legs:
-        state = np.array([*leg.plan.position, *leg.plan.velocity, leg.plan.mass])[:, None]
+        state = np.array([*leg.plan.position, *leg.plan.velocity, leg.plan.seventh])[:, None]
         one = observed(leg.plan, setting, np.array([leg.plan.begin]), state, 0, np.inf)
         for name, values in one.environment.items():
             empty: Any = np.nan if values.dtype.kind == "f" else values.dtype.type(0)

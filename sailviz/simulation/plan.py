@@ -19,6 +19,7 @@ from sailviz.propagate.events import Watch, watch
 from sailviz.propagate.voltage_callback import R_REF, U_REF, WANTED, voltage_callback
 from sailviz.run.arrays import Body
 from sailviz.scene.device import DistanceControl, SolarSail, control_of
+from sailviz.scene.film import ages
 from sailviz.scene.loading import Scene
 from sailviz.scene.phases import scene_of
 from sailviz.simulation.environment import parts_of, surroundings
@@ -35,6 +36,7 @@ from sailviz.simulation.beside import BesideDevice, by_its_force, devices_beside
 from sailviz.simulation.bodies import body_of, epoch_of
 from sailviz.simulation.device import device_of, strength_or_none
 from sailviz.simulation.events import latest_end, quantities_watched, watched
+from sailviz.simulation.film import dose_at_start, film_numbers
 from sailviz.simulation.identity import identity_of
 from sailviz.simulation.sky import SceneSky, pushed_by_shape, sky_of, under_sky
 from sailviz.simulation.start import design_of, held_radius, initial_state
@@ -48,7 +50,7 @@ class Handover(NamedTuple):
     time: float  # s
     position: np.ndarray  # (3,) m
     velocity: np.ndarray  # (3,) m/s
-    mass: float  # kg
+    seventh: float  # number of the state: see Plan
     in_use: bool  # whether the device has not been switched off for good
 
 
@@ -60,7 +62,9 @@ class Plan:
     body: Body
     position: np.ndarray  # (3,) m
     velocity: np.ndarray  # (3,) m/s
-    mass: float  # kg; 1 where the scene gives none, so that forces are accelerations
+    # number of the state: mass kg, 1 where the scene gives none, so that forces are accelerations; of a film that ages
+    # the dose, s of full sunlight at 1 au, since nothing burns beside it
+    seventh: float
     model: dynamics.Model
     table: np.ndarray | None  # of the steering, `sailviz.steering.table`
     schedule: Schedule  # of the thrust factor
@@ -82,6 +86,13 @@ class Plan:
     def mass_known(self) -> bool:
         """Whether the scene gives a mass."""
         return self.scene.device.mass is not None
+
+    def masses(self, states: np.ndarray) -> np.ndarray:
+        """Mass (n,) kg in states (7, n): 1 where the scene gives none."""
+        if dose_at_start(self.scene) is None:
+            found: np.ndarray = states[6]
+            return found
+        return np.full(states.shape[1], self.scene.device.mass or 1.0)
 
 
 def plan(scene: Scene, steering: object = None, force: object = None, taken: Handover | None = None) -> Plan:
@@ -106,6 +117,9 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
     device, steered, overhead = pushed_by_shape(*under_sky(sky, device, steered))
     device, overhead = by_its_force(scene, device, overhead)
     addresses, keep = _own_functions(steering=steering, force=force)
+    if addresses and ages(scene):
+        words = "a function of one's own gets the mass, which a flight of a film that ages does not carry."
+        raise SceneError([Fault("device.ageing", words)], scene.source)
     if steering is not None:
         steered = LoweredSteering(attitude.USER)
     when, times_beside = schedules(scene, steered.table)
@@ -132,6 +146,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         table=steered.table,
         burns=any(one.burns for one in beside),
         quantity=quantities_watched(scene, device.kind, phase),
+        film=film_numbers(scene, strength or 0.0, 1.0 if phase is None else phase.state_of(scene.device).level),
         **addresses,
         **merged(
             {"forces": device.forces},
@@ -153,7 +168,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         body,
         position,
         velocity,
-        taken.mass if taken is not None else scene.device.mass or 1.0,
+        taken.seventh if taken is not None else _seventh(scene),
         model,
         steered.table,
         when,
@@ -171,6 +186,12 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         limit,
         taken is None or taken.in_use,
     )
+
+
+def _seventh(scene: Scene) -> float:
+    """The last number of the state at the start of a flight."""
+    dose = dose_at_start(scene)
+    return scene.device.mass or 1.0 if dose is None else dose
 
 
 def _own_functions(**functions: object) -> tuple[dict[str, int], tuple[object, ...]]:
@@ -210,6 +231,8 @@ def _integrator(
     shaped = isinstance(scene.device, SolarSail) and scene.device.shape is not None
     if shaped and run.integrator == "auto":
         return Choice(DOP853, "the force of a shape, read from a table, has kinks")
+    if ages(scene):
+        return Choice(DOP853, "it carries the dose of a film that ages along with the state")
     found = choose(model, position, velocity, duration, breaks, run.integrator, run.tolerance, beside)
     if not found.possible:
         raise SceneError([Fault("propagation.integrator", f"{found.reason}.")], scene.source)

@@ -17,8 +17,10 @@ from sailviz.propagate.patience import Patience
 from sailviz.propulsion.devices import CALLED, THRUSTER
 from sailviz.run.arrays import Attitude, Event, Run, Setting, Thrust
 from sailviz.run.devices import SAILS
+from sailviz.scene.film import ages
 from sailviz.simulation.beside import observed_devices, sum_of, thrust_of
 from sailviz.simulation.environment_columns import axes_of_light, observe, rolled, torques_of_light, voltages
+from sailviz.simulation.film import film_columns
 from sailviz.simulation.integration import INTEGRATORS
 from sailviz.simulation.no_progress import too_many, too_short, too_slow
 from sailviz.simulation.plan import Plan
@@ -67,10 +69,12 @@ def first_end(off_time: float, state: Any, events: list[Event]) -> float:
 
 
 def with_known_mass(p: Plan, events: list[Event]) -> list[Event]:
-    """Events whose state says no mass where the scene gives none: 1 kg flew, so that forces are accelerations."""
-    if p.mass_known:
+    """Events whose state says no mass where the scene gives none: 1 kg flew, so that forces are accelerations; and the
+    mass where the flight carries a dose in its place."""
+    if p.mass_known and not ages(p.scene):
         return events
-    return [replace(event, state=np.append(event.state[:6], np.nan)) for event in events]
+    mass = p.scene.device.mass if p.mass_known else np.nan
+    return [replace(event, state=np.append(event.state[:6], mass)) for event in events]
 
 
 def with_last_state(filled: Filled, state: Any) -> Filled:
@@ -133,7 +137,7 @@ def fill(
         if status != stepping.DONE:
             break
     moments, out = moments[:filled], out[:, :filled]
-    states = out if components == 7 else np.vstack([out, np.full((1, filled), p.mass)])
+    states = out if components == 7 else np.vstack([out, np.full((1, filled), p.seventh)])
     for time, word in switches:
         at = np.searchsorted(moments, time)
         if at < filled:
@@ -177,11 +181,12 @@ def observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, fi
         time,
         position,
         velocity,
-        states[6].copy() if p.mass_known else np.full(len(time), np.nan),
+        p.masses(states).copy() if p.mass_known else np.full(len(time), np.nan),
         attitude,
         thrust,
         orbital.elements(position, velocity, p.body.mu),
         environment,
         {},
         devices=devices,
+        film=film_columns(p.scene, p.model, time, states, factor),
     )

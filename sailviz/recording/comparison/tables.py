@@ -33,7 +33,7 @@ from sailviz.sky.bodies import BODIES
 
 Source = Recording | Run | FilePath  # what can be compared and exported
 
-TRUTH = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/phases", "/approximation")
+TRUTH = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/film", "/phases", "/approximation")
 DEVICES = "/thrust/"  # above the entities of several devices
 FLIGHT = "/flight/"  # above the entities of flights that were recorded together
 APART = (*TRUTH, "/events", "/scene", "/about")  # not part of the picture

@@ -10,6 +10,7 @@ from sailviz.scene.conflicts.records import device_of, devices_of, start_of, ste
 from sailviz.scene.conflicts.starts import STARTS
 from sailviz.scene.conflicts.surroundings import IRRADIANCES, WINDS
 from sailviz.scene.device import SolarSail, control_of
+from sailviz.scene.film import tells_film
 from sailviz.scene.units_in_keys import words_of_kind
 
 if TYPE_CHECKING:
@@ -93,9 +94,10 @@ def brightness(scene: Scene) -> Faults:
     """How bright the light is matters where it makes an acceleration of area and mass."""
     if scene.light is None or not scene.light.bright:
         return []
-    if any(isinstance(device, SolarSail) and device.by_area for device in scene.devices):
+    if any(isinstance(device, SolarSail) and device.by_area for device in scene.devices) or tells_film(scene):
         return []
-    return [("light", "the brightness of the light acts on a solar sail that gives its area and its mass, on no other")]
+    words = "acts on a solar sail that gives its area and its mass, or on a film that ages or gets too hot, on no other"
+    return [("light", f"the brightness of the light {words}")]
 
 
 def varying_drive(scene: Scene) -> Faults:

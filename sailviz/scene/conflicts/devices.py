@@ -51,7 +51,10 @@ def _sail_as_designed(device: SolarSail | ElectricSail) -> bool:
 
 
 def _film_first_order(device: SolarSail) -> list[str]:
-    return [] if device.shape is None else ["the first-order solution knows flat sails, not one with a shape"]
+    found = [] if device.shape is None else ["the first-order solution knows flat sails, not one with a shape"]
+    if device.ageing is not None:
+        found.append("the first-order solution knows films that stay as they are, not one that ages")
+    return found
 
 
 def _electric_design(device: ElectricSail) -> Faults:

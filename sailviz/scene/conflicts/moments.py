@@ -30,6 +30,7 @@ COME_WITH_DEVICES = {
     "brake off",
     "wind on",
     "wind off",
+    "too-hot",
 }  # events that nobody asks for
 OVER_THE_SURFACE = ("altitude", "perigee_altitude", "apogee_altitude", "mean_altitude")
 OF_A_DEVICE = ("pitch", "cone", "clock", "thrust_acceleration", "thrust_factor")

@@ -8,6 +8,7 @@ from sailviz.scene.conflicts import craft, departures, hybrids, limits, low_orbi
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.approximations import approximations
 from sailviz.scene.conflicts.ensembles import ensembles
+from sailviz.scene.conflicts.films import film_of_the_sail
 from sailviz.scene.conflicts.phases import asked_of_each, phases
 from sailviz.scene.conflicts.sky import under_its_sky
 
@@ -35,6 +36,7 @@ QUESTIONS = (
     craft.varying_drive,
     craft.brightness,
     craft.sail_with_a_shape,
+    film_of_the_sail,
     moments.epoch,
     low_orbit.known_of_the_earth,
     low_orbit.tether,

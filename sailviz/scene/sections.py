@@ -135,6 +135,8 @@ PlotWord = Literal[
     "sunlit_fraction",
     "solar_wind_pressure",
     "thrust_voltage",
+    "film_temperature",
+    "dose",
     "irradiance",
     "electrochromic_state",
 ]

@@ -20,6 +20,7 @@ from sailviz.recording.drawing.lanes import Lanes
 from sailviz.recording.drawing.log import Color, Index, Picture
 from sailviz.recording.drawing.phrases import amount, push_unit
 from sailviz.recording.drawing.plot_column import FLAT, SHOWN_FROM, PlotView, corner, merged, nice_range, score
+from sailviz.recording.drawing.film_plots import film_plots
 from sailviz.recording.drawing.plots import RARE, Plot, plots_of
 from sailviz.recording.drawing.samples import Frame
 from sailviz.run import gaps
@@ -115,7 +116,7 @@ class Curves:
         self._picker = timelines.Picker(
             first.setting.rows, FAR_ROWS if frame.sparse else PLOT_ROWS, first.setting.duration
         )
-        self.plots = plots_of(first, frame, craft)
+        self.plots = [*plots_of(first, frame, craft), *film_plots(first)]
         self._number: list[np.ndarray] = []
         self._time: list[np.ndarray] = []
         self._values: dict[str, list[np.ndarray]] = {plot.path: [] for plot in self.plots}

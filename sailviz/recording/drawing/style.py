@@ -48,6 +48,8 @@ QUANTITY = {  # what a curve shows, by the words of its plot
     "current": [120, 224, 232],
     "power": [242, 228, 140],
     "sunlight": SUN,
+    "heat": [255, 190, 92],
+    "dose": [176, 200, 120],
     "lowest": [98, 214, 160],
     "highest": [236, 124, 190],
     "analytic": [255, 176, 66],

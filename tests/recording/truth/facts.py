@@ -141,6 +141,7 @@ class Truth:
         self.devices = {name: recording[f"/thrust/{path_word(name)}"] for name in names}
         self.elements = recording[f"{top}/elements"]
         self.environment = dict(recording[f"{top}/environment"]) if f"{top}/environment" in recording else {}
+        self.film = dict(recording[f"{top}/film"]) if f"{top}/film" in recording else {}
         self.scene = {name: values[0] for name, values in recording[f"{top}/scene"].items()}
         self.clock = self.time + float(self.scene.get("start_s", 0.0))  # of the first flight
         self.mu, self.radius = float(self.scene["body_mu_m3_s2"]), float(self.scene["body_radius_m"])

@@ -28,6 +28,7 @@ UNITS = {  # SI to what a title says
     "mA": 1e3,
     "kV": 1e-3,
     "%": 100.0,
+    "yr": 1.0,
     "% of the distance": 100.0,
     **{same: 1.0 for same in ("V", "W", "W/m²", "K", "eV", "s", "u", "sfu")},
 }
@@ -223,6 +224,20 @@ def off_by(f, entity, *_):
     off = {n: np.linalg.norm(table[f"{n}_position_m"] - f.truth.position, axis=1) / distance for n in names}
     told = [name for joint in f.picture.fixed(entity, "SeriesLines:names") for name in joint.split(" = ")]
     series(f, entity, {name: off[name.replace(" ", "_")] for name in told})
+
+
+def film_temperature(f, entity, *_):
+    """How warm the film is, and what the scene says that it bears."""
+    columns = {"film": f.truth.film["temperature_K"]}
+    limit = f.truth.resolved["device"].get("hottest")
+    if limit is not None:
+        columns["limit"] = np.full(len(f.truth), limit)
+    series(f, entity, columns)
+
+
+def dose(f, entity, *_):
+    """The dose of a film that ages, as it is recorded."""
+    series(f, entity, {"dose": f.truth.film["dose_yr"]})
 
 
 def acting(f, entity, name, *_):

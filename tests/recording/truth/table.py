@@ -243,6 +243,8 @@ NAMED = {
     "clock": ("/attitude clock_rad", plots.clock),
     "push": ("/thrust magnitude_m_s2", plots.thrust),
     "approximation": ("/approximation", plots.off_by),
+    "film_temperature": ("/film temperature_K, /scene", plots.film_temperature),
+    "dose": ("/film dose_yr", plots.dose),
 }
 
 

@@ -57,6 +57,7 @@ USUAL = {  # the unit that is taken where a name comes without one, by dimension
     "number_density": "per_m3",
     "specific_energy": "km2_s2",
     "specific_angular_momentum": "km2_s",
+    "temperature": "K",
     "none": "",
 }
 NAMED = {  # of stems whose words or colours are not those of their names
@@ -84,6 +85,8 @@ NAMED = {  # of stems whose words or colours are not those of their names
     "semi_major_axis": ("Semi-major axis", "semi-major axis"),
     "eccentricity": ("Eccentricity", "eccentricity"),
     "inclination": ("Inclination", "inclination"),
+    "dose": ("Dose of sunlight on the film", "dose"),
+    "film_temperature": ("Temperature of the film", "heat"),
     "sunlit": ("Sunlit", "sunlight"),
     "sunlit_fraction": ("Lit share of the Sun's disc", "sunlight"),
 }

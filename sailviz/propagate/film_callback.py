@@ -68,9 +68,7 @@ def temperature_of(t, x, y, z, vx, vy, vz, m, factor, p, tables):
     return balance(ux * nx + uy * ny + uz * nz, near, shines, m if p.film.ages != 0.0 else 0.0, p.film)
 
 
-def observe_film(
-    time: np.ndarray, states: np.ndarray, factor: np.ndarray, parameters: np.ndarray
-) -> np.ndarray:
+def observe_film(time: np.ndarray, states: np.ndarray, factor: np.ndarray, parameters: np.ndarray) -> np.ndarray:
     """What rows show of a film: (COLUMNS, n) dose s, temperature K, b1, b2, b3. time (n,), states (7, n), their last
     the dose where it ages, factor (n,) of the thrust."""
     out = np.zeros((COLUMNS, len(time)))

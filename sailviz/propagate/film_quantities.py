@@ -35,7 +35,7 @@ def _film_alone(time, state, parameters, own, number, out):
 def _of_film(time, state, parameters, own, number, out):
     p, y, found = record_at(parameters, PARAMETERS), array_at(state, STATE), array_at(out, 4)
     tables = array_at(p.places.address, p.places.end)
-    if number == DOSE or number == FILM_TEMPERATURE:
+    if number in (DOSE, FILM_TEMPERATURE):
         value, size = of_film(number, time, y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], p, tables)
     elif number < PITCH:
         value, size = of_state(number, time, y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], p)
@@ -47,7 +47,7 @@ def _of_film(time, state, parameters, own, number, out):
 def _of_film_under_sky(time, state, parameters, own, number, out):
     p, y, found = record_at(parameters, PARAMETERS), array_at(state, STATE), array_at(out, 4)
     tables = array_at(p.places.address, p.places.end)
-    if number == DOSE or number == FILM_TEMPERATURE:
+    if number in (DOSE, FILM_TEMPERATURE):
         value, size = of_film(number, time, y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], p, tables)
     else:
         value, size = under_a_sky(number, time, y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], p, tables)

@@ -1,8 +1,8 @@
 """Films that age in the light, and how warm they are.
 
-What a film has taken of sunlight is its dose: seconds, or years, of full sunlight at 1 au. With it the film mirrors less
-and its front radiates more, towards an end that a factor says, half of the way for each half dose. The form is that of
-Dachwald, Macdonald, McInnes, Mengali and Quarta (J. Spacecraft and Rockets 44, 2007), known here from its abstract; the
+What a film has had of sunlight is its dose: seconds, or years, of full sunlight at 1 au. With it the film mirrors
+less and its front radiates more, towards an end that a factor says, half of the way for each half dose. The form is
+that of Dachwald, Macdonald, McInnes, Mengali and Quarta (J. Spacecraft and Rockets 44, 2007), known here from its abstract; the
 equations are written down from memory, and no factor and no half dose here is a measurement: they are assumptions.
 
 The temperature is that of a thin film in balance: it takes up what its lit side does not mirror and radiates it from

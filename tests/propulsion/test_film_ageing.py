@@ -73,7 +73,7 @@ def test_a_film_is_as_warm_as_its_balance_has_it(film, distance, pitch, kelvin):
     assert float(temperature(distance * AU, np.radians(pitch), film)) == pytest.approx(kelvin, abs=6e-7)
 
 
-@pytest.mark.parametrize("dose, kelvin", [(1.0, 505.848923), (np.inf, 527.347970)])
+@pytest.mark.parametrize(("dose", "kelvin"), [(1.0, 505.848923), (np.inf, 527.347970)])
 def test_an_aged_film_gets_hotter(dose, kelvin):
     assert float(temperature(0.5 * AU, 0.0, "jpl-2015", dose, 0.2)) == pytest.approx(kelvin, abs=6e-7)
 

@@ -76,7 +76,7 @@ def flown_by_scipy(y0, duration, pitch, factor, half, dose=0.0, strength=1e-3):
     return solve_ivp(rate, (0, duration), [*y0, dose], "DOP853", rtol=1e-13, atol=1e-14 * scale).y[:, -1]
 
 
-@pytest.mark.parametrize("tolerance, most", [(1e-10, 2e-9), (1e-13, 3e-12)])
+@pytest.mark.parametrize(("tolerance", "most"), [(1e-10, 2e-9), (1e-13, 3e-12)])
 def test_the_integrator_that_auto_takes_keeps_a_quickly_ageing_film_to_its_accuracy(tolerance, most):
     """A half dose of 20 days, towards the Sun: against SciPy at 1e-13, place and dose over their sizes."""
     planned = scene(ageing(0.35, 20 / 365.25, dose_d=3), 200, -50)
@@ -154,7 +154,8 @@ def test_blocks_and_phases_carry_the_dose(dive):
     assert np.interp(end.time, cut.time, cut.film["dose_yr"]) == pytest.approx(0.2, abs=1e-9)
     np.testing.assert_allclose(cut.position[-1], whole.position[-1], rtol=0, atol=3e-12 * AU)
     assert cut.film["dose_yr"][-1] == pytest.approx(whole.film["dose_yr"][-1], rel=1e-12)
-    assert np.all(cut.mass == 14) and end.state[6] == 14
+    assert np.all(cut.mass == 14)
+    assert end.state[6] == 14
 
 
 def test_a_flight_goes_on_with_the_dose_that_it_says_it_has():
@@ -171,7 +172,8 @@ def test_a_sail_that_is_off_neither_ages_nor_has_a_temperature():
     run = simulate(load_scene(scene({**ageing(0.2), "active_d": [[0, 20]]}, 40, outputs=5)))
     dose = run.film["dose_yr"]
     assert dose[2] == dose[3] == dose[4] > dose[1] > 0
-    assert np.all(np.isnan(run.film["temperature_K"][2:])) and np.all(run.film["temperature_K"][:2] > 200)
+    assert np.all(np.isnan(run.film["temperature_K"][2:]))
+    assert np.all(run.film["temperature_K"][:2] > 200)
 
 
 def test_a_brighter_light_ages_and_heats_by_as_much_more():
@@ -202,7 +204,8 @@ def test_a_film_ages_by_the_light_that_reaches_it_under_a_sky():
     assert 0.9 < light.mean() < 0.99
     assert run.film["dose_yr"][-1] == pytest.approx(dose, rel=1e-5)
     warm = run.film["temperature_K"]
-    assert np.all(np.isnan(warm[light == 0])) and np.all(warm[light == 1] > 270)
+    assert np.all(np.isnan(warm[light == 0]))
+    assert np.all(warm[light == 1] > 270)
     passes = [event.time for event in run.events if event.name == "too-hot"]
     assert len(passes) == np.count_nonzero((warm[1:] > 250) & ~(warm[:-1] > 250))
 
@@ -214,10 +217,18 @@ def test_a_film_ages_by_the_light_that_reaches_it_under_a_sky():
         ({"film": {"b1": 0.1, "b2": 0.8, "b3": 0}, "hottest_K": 500}, {}, "needs the optics"),
         ({"film": "ideal", "hottest_K": 500}, {}, "emissivities are 0"),
         (ageing(), {"steering": {"kind": "optimal", "costates": [0.1, 0.2, 0.3]}}, "reckons_with"),
-        (ageing(), {"environment": {"irradiance": {"kind": "cycle"}}, "ensemble": [{"name": "a", "flights": 9}]}, "stay as they are"),
+        (
+            ageing(),
+            {"environment": {"irradiance": {"kind": "cycle"}}, "ensemble": [{"name": "a", "flights": 9}]},
+            "stay as they are",
+        ),
         ({}, {"event": [{"dose_yr": 1}]}, "only a film that ages"),
         ({}, {"event": [{"kind": "too-hot"}]}, "hottest"),
-        ({"film": "ideal"}, {"expect": [{"quantity": "film_temperature_K", "at": "end", "value": 3, "within": 1}]}, "emissivities"),
+        (
+            {"film": "ideal"},
+            {"expect": [{"quantity": "film_temperature_K", "at": "end", "value": 3, "within": 1}]},
+            "emissivities",
+        ),
         (ageing(1.5), {}, "must be at most 1"),
         ({"back": "black"}, {}, "back belongs"),
         ({**ageing(), "mass_kg": 3}, {"event": [{"mass_kg": 2}]}, "the mass stays"),

@@ -16,11 +16,11 @@ import rerun as rr
 from sailviz.recording import timelines
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.craft import CraftDrawing
+from sailviz.recording.drawing.film_plots import film_plots
 from sailviz.recording.drawing.lanes import Lanes
 from sailviz.recording.drawing.log import Color, Index, Picture
 from sailviz.recording.drawing.phrases import amount, push_unit
 from sailviz.recording.drawing.plot_column import FLAT, SHOWN_FROM, PlotView, corner, merged, nice_range, score
-from sailviz.recording.drawing.film_plots import film_plots
 from sailviz.recording.drawing.plots import RARE, Plot, plots_of
 from sailviz.recording.drawing.samples import Frame
 from sailviz.run import gaps

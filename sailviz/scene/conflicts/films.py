@@ -29,7 +29,9 @@ def _of_those_beside(scene: Scene) -> Faults:
         where = "device.ageing" if ages(scene) else "device"
         found.append((where, "a sail whose film ages is its craft's only device, in no list of several"))
     if any(isinstance(one, SolarSail) and one.hottest is not None for one in scene.beside):
-        found.append(("device", "of several sails the temperature of the first one alone is told: hottest belongs there"))
+        found.append(
+            ("device", "of several sails the temperature of the first one alone is told: hottest belongs there")
+        )
     return found
 
 
@@ -43,7 +45,9 @@ def _ageing(scene: Scene) -> Faults:
     if device.shape is not None:
         found.append((where, "ageing is known of flat sails only, not of one with a shape"))
     if device.control is not None:
-        found.append((where, "a film that darkens when it is told to ages in a way that is not known: control or ageing"))
+        found.append(
+            (where, "a film that darkens when it is told to ages in a way that is not known: control or ageing")
+        )
     if scene.environment.atmosphere is not None:
         found.append((where, "ageing is known of flights without air: leave environment.atmosphere out"))
     steering = scene.steering

@@ -2,8 +2,9 @@
 
 What a film has had of sunlight is its dose: seconds, or years, of full sunlight at 1 au. With it the film mirrors
 less and its front radiates more, towards an end that a factor says, half of the way for each half dose. The form is
-that of Dachwald, Macdonald, McInnes, Mengali and Quarta (J. Spacecraft and Rockets 44, 2007), known here from its abstract; the
-equations are written down from memory, and no factor and no half dose here is a measurement: they are assumptions.
+that of Dachwald, Macdonald, McInnes, Mengali and Quarta (J. Spacecraft and Rockets 44, 2007), known here from its
+abstract; the equations are written down from memory, and no factor and no half dose here is a measurement: they are
+assumptions.
 
 The temperature is that of a thin film in balance: it takes up what its lit side does not mirror and radiates it from
 both sides. No heat is kept. Formulas re-derived; the force is (3.18)-(3.20) of the thesis at every dose.

@@ -20,6 +20,7 @@ IN_WORDS = {  # units whose key does not say them plainly
     "earth_radii": "equatorial radii of the Earth (6378.137 km)",
     "solar_radii": "radii of the Sun (695,700 km)",
     "um": "µm",
+    "K": "kelvins",
     "yr": "years of 365.25 days",
     "d": "days",
     "h": "hours",

@@ -73,7 +73,7 @@ def with_known_mass(p: Plan, events: list[Event]) -> list[Event]:
     mass where the flight carries a dose in its place."""
     if p.mass_known and not ages(p.scene):
         return events
-    mass = p.scene.device.mass if p.mass_known else np.nan
+    mass = p.scene.device.mass or np.nan
     return [replace(event, state=np.append(event.state[:6], mass)) for event in events]
 
 

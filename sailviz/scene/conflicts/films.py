@@ -99,8 +99,8 @@ def _asked(scene: Scene) -> Faults:
         for place in asked_for(scene, "mass"):
             if not place.startswith("expect"):
                 found.append((place, "no propellant burns beside a film that ages: the mass stays as it is"))
-    if (ages(scene) or places or getattr(device, "hottest", None)) and not isinstance(scene.body, str):
-        if scene.light is None or not scene.light.bright:
-            words = f"how bright the light of {scene.body.name} is has to be said: light.irradiance_W_m2"
-            found.append(("light", words))
+    shone_on = ages(scene) or places or getattr(device, "hottest", None)
+    if shone_on and not isinstance(scene.body, str) and (scene.light is None or not scene.light.bright):
+        words = f"how bright the light of {scene.body.name} is has to be said: light.irradiance_W_m2"
+        found.append(("light", words))
     return found

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from sailviz.exchange.aem import AttitudeRows as AttitudeRows
     from sailviz.exchange.aem import read_aem as read_aem
     from sailviz.exchange.aem import write_aem as write_aem
+    from sailviz.exchange.apm import read_apm as read_apm
+    from sailviz.exchange.apm import write_apm as write_apm
     from sailviz.exchange.earth_frames import to_gcrf as to_gcrf
     from sailviz.exchange.element_sets import ElementSet as ElementSet
     from sailviz.exchange.element_sets import read_element_sets as read_element_sets
@@ -26,6 +28,8 @@ _HOMES = {
     "AttitudeRows": "aem",
     "read_aem": "aem",
     "write_aem": "aem",
+    "read_apm": "apm",
+    "write_apm": "apm",
     "to_gcrf": "earth_frames",
     "write_omm": "omm",
     "OrbitParameters": "opm",

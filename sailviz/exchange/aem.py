@@ -1,4 +1,4 @@
-"""Attitude ephemeris messages: quaternions over time (CCSDS 504.0-B, versions 1 and 2, keyword = value form).
+"""Attitude ephemeris messages: quaternions over time (CCSDS 504.0-B, versions 1 and 2, as keywords or XML).
 
 In version 2 a quaternion is Q1 Q2 Q3 QC, its scalar last, and turns from frame A to frame B: v_B = C v_A. With A the
 frame of a run and B the craft these are the numbers of a quaternion from body to world, (x, y, z, w). Version 1 says
@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sailviz import files
+from sailviz import files, ndm
 from sailviz.calendar import DateError, tai
 from sailviz.errors import RecordingError
-from sailviz.exchange.keywords import Word, finite, keyword, lines_of, needed
+from sailviz.exchange.keywords import Word, finite, keyword, needed
 from sailviz.exchange.opm import plain
 
 Floats = NDArray[np.float64]
@@ -48,7 +48,7 @@ def read_aem(path: str | Path) -> AttitudeRows:
     attitude than quaternions, or changes its frames."""
     blocks: list[tuple[dict[str, Word], list[tuple[int, str]]]] = []
     version, section = "2", "head"
-    for line, text in lines_of(path, "AEM"):
+    for line, text in ndm.lines(path, "AEM"):
         upper = text.upper()
         if upper == "META_START":
             blocks.append(({}, []))
@@ -99,22 +99,29 @@ def _block(meta: dict[str, Word], rows: list[tuple[int, str]], version: str, pat
     scalar_first = version == "1" and meta["QUATERNION_TYPE"].value.upper() == "FIRST" \
         if "QUATERNION_TYPE" in meta else False  # fmt: skip
     q = np.roll(q[:, :4], -1, axis=1) if scalar_first else q[:, :4]
-    length = np.linalg.norm(q, axis=1)
-    worst = int(np.argmax(np.abs(length - 1.0)))
-    if abs(length[worst] - 1.0) > WRONG:
-        raise RecordingError(f"{path}, line {rows[worst][0]}: a quaternion of length {length[worst]:.6g}, and 1 is due")
-    notes = ["quaternions were brought to length 1"] if abs(length[worst] - 1.0) > NOTICED else []
+    q, notes = unit_length(q, [line for line, _ in rows], path)
     if NUMBERS[kind] > 4:
         notes.append("rates are passed over")
-    frame, of_body = _direction(meta, version, path)
-    q = q / length[:, None] * ([1.0, 1.0, 1.0, 1.0] if of_body else [-1.0, -1.0, -1.0, 1.0])
+    frame, of_body = direction(meta, version, path)
+    q = q * ([1.0, 1.0, 1.0, 1.0] if of_body else [-1.0, -1.0, -1.0, 1.0])
     return AttitudeRows(
         meta["OBJECT_NAME"].value, meta["OBJECT_ID"].value, frame, system, np.array(instants, np.int64), q, (0,),
         tuple(notes),
     )  # fmt: skip
 
 
-def _direction(meta: dict[str, Word], version: str, path: str | Path) -> tuple[str, bool]:
+def unit_length(q: Floats, lines: Sequence[int], path: str | Path) -> tuple[Floats, list[str]]:
+    """Quaternions (n, 4) of length 1, and a sentence where they were brought to it. RecordingError, with the line of
+    the worst, where they are no attitudes."""
+    with np.errstate(over="ignore"):
+        length = np.linalg.norm(q, axis=1)
+    worst = int(np.argmax(np.abs(length - 1.0)))
+    if abs(length[worst] - 1.0) > WRONG:
+        raise RecordingError(f"{path}, line {lines[worst]}: a quaternion of length {length[worst]:.6g}, and 1 is due")
+    return q / length[:, None], ["quaternions were brought to length 1"] if abs(length[worst] - 1.0) > NOTICED else []
+
+
+def direction(meta: dict[str, Word], version: str, path: str | Path) -> tuple[str, bool]:
     """The frame that is not the craft's, and whether the quaternions turn from it to the craft (so that they are those
     from body to world)."""
     a, b = (meta[f"REF_FRAME_{side}"].value.upper() for side in "AB")

@@ -15,6 +15,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from sailviz import ndm
 from sailviz.calendar import DateError, label
 from sailviz.words import nearest
 
@@ -57,6 +58,7 @@ _PATTERNS = {  # of what is written in another way than 12.34
     "drag term": _POWER,
 }
 _NUMBERS = ("MEAN_MOTION", "ECCENTRICITY", "INCLINATION", "RA_OF_ASC_NODE", "ARG_OF_PERICENTER", "MEAN_ANOMALY")
+_UNITS = dict.fromkeys(_NUMBERS, "deg") | {"MEAN_MOTION": "rev/day", "ECCENTRICITY": ""}
 _REQUIRED = ("EPOCH", *_NUMBERS)
 _DEFAULTS = {  # of what a message may leave out and SGP4 does without
     "OBJECT_NAME": "",
@@ -157,9 +159,9 @@ def read_element_sets(path: str | Path) -> list[ElementSet]:
     if re.match(r"[\[{]", begin):
         return _of_messages(_json(text))
     if begin.startswith("<"):
-        return _of_messages(_xml(text))
+        return _of_messages(_keywords(_xml(text)))
     if begin.upper().startswith("CCSDS_OMM_VERS"):
-        return _of_messages(_keywords(text))
+        return _of_messages(_keywords(text.splitlines()))
     if "MEAN_MOTION" in begin.splitlines()[0] if begin else False:
         import csv
 
@@ -201,30 +203,23 @@ def _json(text: str) -> list[dict[str, Any]]:
     return found
 
 
-def _xml(text: str) -> list[dict[str, Any]]:
-    import xml.etree.ElementTree as ElementTree
-
-    if "<!DOCTYPE" in text or "<!ENTITY" in text:
-        raise ValueError("a message in XML has no document type and no entities of its own")
-    try:
-        root = ElementTree.fromstring(text)
-    except ElementTree.ParseError as error:
-        raise ValueError(f"this is no XML: {error}") from None
-    return [
-        {item.tag: (item.text or "").strip() for item in segment.iter() if len(item) == 0}
-        for segment in root.iter("segment")
-    ]
+def _xml(text: str) -> list[str]:
+    """The lines of all mean-elements messages of an XML document."""
+    return [line for message in ndm.xml_messages(text) if message.kind == "OMM" for _, line in message.lines]
 
 
-def _keywords(text: str) -> list[dict[str, Any]]:
+def _keywords(lines: list[str]) -> list[dict[str, Any]]:
     fields: list[dict[str, Any]] = []
-    for line in text.splitlines():
+    for line in lines:
         key, equals, value = line.partition("=")
         key = key.strip().upper()
         if key == "CCSDS_OMM_VERS":
             fields.append({})
         elif equals and fields:
-            fields[-1][key] = re.sub(r"\s*\[.*\]$", "", value.strip())
+            unit = re.search(r"\s*\[([^\]]*)\]\s*$", value)
+            if unit and key in _UNITS and unit.group(1).strip().lower() != _UNITS[key]:
+                raise ValueError(f"{key} is in [{unit.group(1).strip()[:20]}], and [{_UNITS[key]}] is due")
+            fields[-1][key] = value[: unit.start()].strip() if unit else value.strip()
     return fields
 
 

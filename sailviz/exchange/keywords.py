@@ -1,4 +1,4 @@
-"""Messages of the CCSDS in keyword = value form: sections of keywords, with or without units, and lines of data."""
+"""Keywords of the lines of messages (ndm.py), with or without units, and their numbers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 from sailviz.errors import RecordingError
 
-LONGEST_FILE = 256_000_000  # bytes
 _UNIT = re.compile(r"\s*\[([^\]]*)\]\s*$")
 
 
@@ -19,39 +18,6 @@ class Word(NamedTuple):
     value: str
     unit: str
     line: int
-
-
-def lines_of(path: str | Path, kind: str) -> list[tuple[int, str]]:
-    """(line number, text) of the lines of a message that say something. kind : OPM, AEM ... RecordingError, in one
-    sentence, for what is no such message."""
-    if Path(path).exists() and not Path(path).is_file():  # a pipe or a device may never end
-        raise RecordingError(f"cannot read {path}: it is not a regular file")
-    try:
-        if Path(path).stat().st_size > LONGEST_FILE:
-            raise RecordingError(f"{path} is too large for an {kind}")
-        text = Path(path).read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise RecordingError(f"{path} is not an {kind}: it is not text") from None
-    except (OSError, ValueError) as error:
-        why = getattr(error, "strerror", None) or str(error)
-        raise RecordingError(f"cannot read {path}: {why.lower()}") from None
-    stripped = [(number, line.strip()) for number, line in enumerate(text.splitlines(), 1)]
-    said = [item for item in stripped if item[1] and not re.match(r"COMMENT(\s|$)", item[1], re.IGNORECASE)]
-    first = said[0][1] if said else ""
-    if first.startswith("<"):
-        raise RecordingError(f"{path} is an {kind} in XML; only the keyword = value form is read here")
-    if not first.upper().startswith(f"CCSDS_{kind}_VERS"):
-        raise RecordingError(f"{path} is not an {kind}: it does not begin with CCSDS_{kind}_VERS")
-    return said
-
-
-def is_message(path: str | Path, kind: str) -> bool:
-    """Whether a file begins as such a message."""
-    try:
-        lines_of(path, kind)
-    except RecordingError:
-        return False
-    return True
 
 
 def keyword(text: str, number: int, path: str | Path) -> tuple[str, Word]:

@@ -1,4 +1,4 @@
-"""Orbit parameter messages: one state of a craft, with its mass and areas (CCSDS 502.0-B-3, keyword = value form).
+"""Orbit parameter messages: one state of a craft, with its mass and areas (CCSDS 502.0-B-3, as keywords or XML).
 
     found = read_opm("state.opm")
     found.position, found.velocity, found.epoch
@@ -13,10 +13,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
 
-from sailviz import files
+from sailviz import files, ndm
 from sailviz.calendar import DateError, tai
 from sailviz.errors import RecordingError
-from sailviz.exchange.keywords import Word, keyword, lines_of, needed, number
+from sailviz.exchange.keywords import Word, keyword, needed, number
 
 Three = tuple[float, float, float]
 
@@ -83,7 +83,7 @@ def _words(path: str | Path) -> tuple[dict[str, Word], tuple[str, ...]]:
     """The keywords that count, and sentences about those that do not."""
     words: dict[str, Word] = {}
     passed: dict[str, None] = {}
-    for line, text in lines_of(path, "OPM"):
+    for line, text in ndm.lines(path, "OPM"):
         if text.upper() in ("META_START", "META_STOP"):
             continue
         key, word = keyword(text, line, path)

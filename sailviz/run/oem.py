@@ -1,4 +1,4 @@
-"""Orbit ephemeris messages (CCSDS 502.0-B, keyword = value form): the file in which missions exchange trajectories.
+"""Orbit ephemeris messages (CCSDS 502.0-B, as keywords or XML): the file in which missions exchange trajectories.
 
 Read here because the maintained reader, `oem`, holds one astropy object per row and rounds epochs to microseconds,
 which is centimetres on the way round the Sun; the tests let it judge. Writing is oem_writer.py's business.
@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sailviz import frames
+from sailviz import frames, ndm
 from sailviz.calendar import DateError, tai
 from sailviz.errors import RecordingError
 from sailviz.run import dates
@@ -114,14 +114,14 @@ class _Block:
 
 
 def read_oem(path: str | Path) -> Ephemeris:
-    """Read an OEM in keyword = value form, versions 1 to 3, all its blocks as one trajectory.
+    """Read an OEM, keywords or XML, versions 1 to 3, all its blocks as one trajectory.
 
     Of each block the rows between USEABLE_START_TIME and USEABLE_STOP_TIME count. Where blocks still overlap the later
     one counts from its first row on; where one begins at the epoch and place at which another ends, the later row
     counts, or both do where the velocity jumps. Accelerations and covariances are passed over. RecordingError, in one
     sentence with the line, for what is no OEM, is malformed, or changes its frame or centre.
     """
-    blocks, notes = _blocks(_lines(path), path)
+    blocks, notes = _blocks(ndm.lines(path, "OEM"), path)
     meta = _common_meta(blocks, path)
     for block in blocks:
         _read_times(block, meta["TIME_SYSTEM"], path)
@@ -167,35 +167,15 @@ def of_one_state(
     return Ephemeris(name, identity, center, _frame(frame), system, epoch, np.zeros(1), *state, (), notes)
 
 
-def _lines(path: str | Path) -> list[str]:
-    if Path(path).exists() and not Path(path).is_file():  # a pipe or a device may never end
-        raise RecordingError(f"cannot read {path}: it is not a regular file")
-    try:
-        lines = Path(path).read_text(encoding="utf-8-sig").splitlines()
-    except UnicodeDecodeError:
-        raise RecordingError(f"{path} is not an OEM: it is not text") from None
-    except OSError as error:
-        raise RecordingError(f"cannot read {path}: {(error.strerror or str(error)).lower()}") from None
-    first = next((line.strip() for line in lines if line.strip()), "")
-    if first.startswith("<"):
-        raise RecordingError(f"{path} is an OEM in XML; only the keyword = value form is read here")
-    if not first.upper().startswith("CCSDS_OEM_VERS"):
-        raise RecordingError(f"{path} is not an OEM: it does not begin with CCSDS_OEM_VERS")
-    return lines
-
-
 _SECTIONS = {"META_START": "meta", "META_STOP": "data", "COVARIANCE_START": "covariance", "COVARIANCE_STOP": "data"}
 
 
-def _blocks(lines: list[str], path: str | Path) -> tuple[list[_Block], list[str]]:
+def _blocks(lines: list[ndm.Line], path: str | Path) -> tuple[list[_Block], list[str]]:
     """The blocks as they are written, and what in them is passed over."""
     blocks: list[_Block] = []
     passed: dict[str, None] = {}
     section = "header"
-    for number, line in enumerate(lines, 1):
-        text = line.strip()
-        if not text or text.upper().startswith("COMMENT"):
-            continue
+    for number, text in lines:
         if text.upper() in _SECTIONS:
             section = _SECTIONS[text.upper()]
             if text.upper() == "META_START":

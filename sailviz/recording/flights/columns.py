@@ -123,13 +123,22 @@ def _table(path: Path) -> Mapping[str, np.ndarray]:
     import pyarrow.parquet
 
     try:
-        table = pa.csv.read_csv(path) if path.suffix.lower() == ".csv" else pyarrow.parquet.read_table(path)
+        table = (
+            pa.csv.read_csv(path)
+            if path.suffix.lower() == ".csv" and not _is_parquet(path)
+            else pyarrow.parquet.read_table(path)
+        )
         if len(set(table.column_names)) < len(table.column_names):
             raise RecordingError(f"{path}: two columns have one name")
         return {name.strip(): table[name].to_numpy() for name in table.column_names}
     except (pa.ArrowException, UnicodeDecodeError, ValueError) as error:
         words = " ".join(str(error).split())[:160]
         raise RecordingError(f"{path} is no table that can be read: {words}") from None
+
+
+def _is_parquet(path: Path) -> bool:
+    with open(path, "rb") as file:
+        return file.read(4) == b"PAR1"
 
 
 def _sorted(raw: Mapping[str, np.ndarray], path: Path) -> dict[str, np.ndarray]:

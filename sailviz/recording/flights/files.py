@@ -1,6 +1,6 @@
 """Somebody's flight, whatever file it is in, as a Run.
 
-oem                 an orbit ephemeris message
+oem                 an orbit ephemeris message, as keywords or XML; messages and kernels are known under any name
 bsp                 a kernel of SPICE whose segments hold rows
 csv, parquet, npz   columns whose names say what they are and in which unit (columns.py)
 
@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sailviz import frames
+from sailviz import frames, ndm
 from sailviz.calendar import DateError, tai
 from sailviz.errors import RecordingError
 from sailviz.exchange import earth_frames, spk
@@ -31,6 +31,12 @@ from sailviz.sky.bodies import BODIES
 
 TABLES = (".csv", ".parquet", ".npz")
 ENDINGS = (".oem", ".bsp", *TABLES)
+OTHERS = {  # messages that hold no flight
+    "OPM": "one state, where a scene may start (kind oem)",
+    "OMM": "mean elements, by which a scene may start (kind tle)",
+    "AEM": "an attitude without places",
+    "APM": "one attitude",
+}
 J2000 = "2000-01-01T12:00:00"
 LONG_STEP, PART_OF_TURN = 5.0, 1 / 20  # a step so many times the usual one, and so long, is a gap
 LONG_PAUSE = 2.0  # row steps between two segments of a kernel from which rows are missing
@@ -48,8 +54,28 @@ NO_MESH = Look()
 
 
 def is_flight(path: object) -> bool:
-    """Whether a path is meant as somebody's flight: by its ending; an archive of our own export counts as one too."""
-    return isinstance(path, str | Path) and Path(path).suffix.lower() in ENDINGS
+    """Whether a path is meant as somebody's flight: by its ending, or since it begins as a message or a kernel does; an
+    archive of our own export counts as one too."""
+    if not isinstance(path, str | Path):
+        return False
+    return Path(path).suffix.lower() in ENDINGS or ending_by_content(path) in (".oem", ".bsp")
+
+
+def ending_by_content(path: str | Path) -> str:
+    """The one of ENDINGS that a file's first bytes speak of, "" where they speak of none. Every message counts as
+    .oem, so that one of another kind is told as what it is."""
+    try:
+        if not Path(path).is_file():
+            return ""
+        with open(path, "rb") as file:
+            head = file.read(8)
+    except (OSError, ValueError):
+        return ""
+    if head.startswith((b"DAF/", b"NAIF/DAF")):
+        return ".bsp"
+    if head.startswith(b"PAR1"):
+        return ".parquet"
+    return ".oem" if ndm.kind_of(path) else ""
 
 
 def read_flight(path: str | Path, body: str = "", look: Look = NO_MESH) -> Run:
@@ -58,9 +84,12 @@ def read_flight(path: str | Path, body: str = "", look: Look = NO_MESH) -> Run:
     due, or says itself that it is in others or about another body."""
     if body:
         body_of(body)
-    ending = Path(path).suffix.lower()
+    ending = ending_by_content(path) or Path(path).suffix.lower()
     if ending not in ENDINGS:
         raise RecordingError(f"{path} is no flight that is read here: its name must end in {', '.join(ENDINGS)}")
+    kind = ndm.kind_of(path)
+    if ending == ".oem" and kind in OTHERS:
+        raise RecordingError(f"{path} is an {kind}, {OTHERS[kind]}, and no flight")
     if ending in TABLES:
         return _of_columns(read_columns(path), path, body, look)
     return _of_ephemeris(read_oem(path) if ending == ".oem" else _of_kernel(path), path, body, look)

@@ -100,11 +100,11 @@ def _first_row(scene: Scene, start: OemStart) -> datetime:
 
 def read_states(path: Path) -> Ephemeris:
     """What a message has: the rows of an OEM, or the one state of an OPM. RecordingError, in one sentence."""
-    from sailviz.exchange.keywords import is_message
+    from sailviz import ndm
     from sailviz.exchange.opm import read_opm
     from sailviz.run.oem import of_one_state, read_oem
 
-    if not is_message(path, "OPM"):
+    if ndm.kind_of(path) != "OPM":
         return read_oem(path)
     found = read_opm(path)
     about = found.name, found.identity, found.center, found.frame, found.time_system

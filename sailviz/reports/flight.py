@@ -16,15 +16,20 @@ from sailviz.deorbits.companions import Companion, companions_of
 from sailviz.deorbits.disposal import LOW_ORBIT, NOT_COVERED, RULES, Descent, descent_of, rule_rows
 from sailviz.errors import RecordingError, SceneError
 from sailviz.recording import Recording, info, read
+from sailviz.recording import digest as contents_digest
 from sailviz.recording.recorded_run import run_of
 from sailviz.reports.page import Page, Section, Table
 from sailviz.reports.pictures import pictures_of
+from sailviz.reports.spread import spreads, uncertainty
 from sailviz.run.arrays import Run
 from sailviz.scene import Scene, load_scene
 from sailviz.scene.show import resolved_lines
 from sailviz.simulation.identity import identity_of
 from sailviz.version import __version__
 from sailviz.words import duration, length
+
+PUSHES = ((1e-3, "mm/s²"), (1e-6, "µm/s²"), (1e-9, "nm/s²"))
+ROUNDING = 1e-12  # below which an eccentricity or an angle in degrees is nothing
 
 
 def flight_page(
@@ -48,10 +53,11 @@ def flight_page(
         _what_came(facts, run, verdicts),
         *(_disposal(scene, run, descent, others) if descent else ()),
         *([Section("Pictures", (no_picture,) * bool(no_picture), pictures=seen)] if seen or no_picture else []),
+        *uncertainty(recording),
         _motion(run),
         *_inputs(recording, scene, path, again),
     ]
-    answer = (*_answer(facts, run, descent, verdicts),)
+    answer = (*_answer(facts, run, descent, verdicts), *spreads(recording))
     made = f"sailviz {__version__}; every number is read from the recording named under Inputs."
     return Page(facts["title"] or path.name, answer, tuple(sections), made)
 
@@ -175,21 +181,35 @@ def _motion(run: Run) -> Section:
         row("distance from the centre", tuple(length(float(np.linalg.norm(run.position[i]))) for i in ends)),
         row("speed", tuple(f"{float(np.linalg.norm(run.velocity[i])) / 1e3:.6g} km/s" for i in ends)),
         row("semi-major axis", tuple(length(float(e.semi_major_axis[i])) for i in ends)),
-        row("eccentricity", tuple(f"{float(e.eccentricity[i]):.6g}" for i in ends)),
-        row("inclination", tuple(f"{np.degrees(float(e.inclination[i])):.6g}°" for i in ends)),
-        row("mass", tuple(f"{float(run.mass[i]):.6g} kg" for i in ends)),
-        row("acceleration of the device", tuple(f"{float(run.thrust.magnitude[i]) * 1e3:.5g} mm/s²" for i in ends)),
+        row("eccentricity", tuple(_plain(float(e.eccentricity[i])) for i in ends)),
+        row("inclination", tuple(f"{_plain(np.degrees(float(e.inclination[i])))}°" for i in ends)),
+        row("mass", tuple("not given" if np.isnan(run.mass[i]) else f"{float(run.mass[i]):.6g} kg" for i in ends)),
+        row("acceleration of the device", _pushes(run)),
     )
     return Section("Motion", tables=(Table(rows, ("", "at the start", "at the end")),))
 
 
+def _pushes(run: Run) -> tuple[str, str]:
+    """What the device does at either end, in one unit."""
+    ends = [float(run.thrust.magnitude[i]) for i in (0, -1)]
+    size, unit = next(((s, u) for s, u in PUSHES if max(ends) >= s), PUSHES[-1])
+    first, last = (f"{push / size:.5g} {unit}" if push > 0 else "none" for push in ends)
+    return first, last
+
+
+def _plain(number: float) -> str:
+    """A number of order 1; what is only rounding is 0."""
+    return "0" if abs(number) < ROUNDING else f"{number:.6g}"
+
+
 def _inputs(recording: Recording, scene: Scene | None, path: Path, again: str) -> Iterator[Section]:
     """File, checksums, versions, accuracy; the scene letter by letter; every value as it was understood."""
-    digest = hashlib.sha256(path.read_bytes()).hexdigest()
+    whole = hashlib.sha256(path.read_bytes()).hexdigest()
     epoch = info(recording)["epoch"]
     rows = [
         ("recording", f"{path.name}, {path.stat().st_size / 1e6:.3g} MB"),
-        ("SHA-256", digest),
+        ("SHA-256", whole),
+        ("digest of what it holds", contents_digest(recording)),
         ("identity of the scene", recording.identity),
         ("epoch", f"{epoch} UTC" if epoch else "none"),
         ("versions", ", ".join(f"{name} {number}" for name, number in recording.versions.items())),

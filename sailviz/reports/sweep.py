@@ -14,6 +14,8 @@ import numpy as np
 from sailviz.deorbits.disposal import DOWN, NOT_COVERED, RULES, shares_within
 from sailviz.errors import RecordingError
 from sailviz.reports.page import Page, Section, Table
+from sailviz.reports.sweep_pictures import column as column_of
+from sailviz.reports.sweep_pictures import sweep_pictures
 from sailviz.sweeps.censoring import AT_LEAST, Number, bounded, statistics
 from sailviz.sweeps.flight import FAILED
 from sailviz.sweeps.report import column, reported
@@ -31,16 +33,21 @@ FACTS = b"sailviz.sweep"
 MOST_ROWS = 60  # of the table of flights that a page shows
 
 
-def sweep_page(table: pa.Table, scene: Scene | None, *, path: Path | None = None, again: str = "") -> Page:
+def sweep_page(
+    table: pa.Table, scene: Scene | None, *, path: Path | None = None, again: str = "", pictures: bool = True
+) -> Page:
     """The page of the table of a sweep. scene : that was varied, None if it is not at hand; path : of the table;
-    again : the command that flies it. RecordingError for a table that is not of a sweep."""
+    again : the command that flies it; pictures : whether one is drawn. RecordingError for a table that is not of a
+    sweep."""
     facts = facts_of(table)
     asked = [name for name in table.column_names if _is_asked(name)]
     rows = table.num_rows
     title = f"{scene.title if scene is not None else facts['scene']}: {rows:,} flights"
+    seen, no_picture = sweep_pictures(table, facts, asked, title) if pictures else ((), "")
     sections = [
         *_disposal(table, asked, facts),
         *_numbers(table, asked),
+        *([Section("Pictures", (no_picture,) * bool(no_picture), pictures=seen)] if seen or no_picture else []),
         _varied(facts, table),
         _flights(table, facts, asked),
     ]
@@ -86,7 +93,7 @@ def _answer(table: pa.Table, asked: list[str]) -> Iterator[str]:
     """The sentences that a sweep is read for."""
     times = _times(asked)
     for name in times:
-        values, least = _column(table, name), _column(table, name + AT_LEAST)
+        values, least = column_of(table, name), column_of(table, name + AT_LEAST)
         event = name.split("@")[1]
         numbers = statistics(values, least)
         if not numbers:
@@ -98,7 +105,7 @@ def _answer(table: pa.Table, asked: list[str]) -> Iterator[str]:
             share = f"{still:,} of {table.num_rows:,} flights ({still / table.num_rows:.1%})"
             yield f"{share} had not come there when their time was over."
     if not times and asked:
-        numbers = statistics(_column(table, asked[0]), np.zeros(0))
+        numbers = statistics(column_of(table, asked[0]), np.zeros(0))
         if numbers:
             least_to_largest = f"from {_cell(numbers['min'])} to {_cell(numbers['max'])}"
             yield f"{asked[0]}: median {_cell(numbers['median'])}, {least_to_largest}."
@@ -126,7 +133,7 @@ def _disposal(table: pa.Table, asked: list[str], facts: dict[str, Any]) -> Itera
     ends = _lowest(facts)
     values = {name: factor for name, factor in _times(asked).items() if name.split("@")[1] in ends}
     for name, factor in values.items():
-        known, least = _column(table, name) * factor, _column(table, name + AT_LEAST) * factor
+        known, least = column_of(table, name) * factor, column_of(table, name + AT_LEAST) * factor
         flown = np.isfinite(known) | np.isfinite(least)
         known, least = known[flown], least[flown]
         if not len(known):
@@ -142,8 +149,8 @@ def _disposal(table: pa.Table, asked: list[str], facts: dict[str, Any]) -> Itera
 def _numbers(table: pa.Table, asked: list[str]) -> Iterator[Section]:
     times, rows = _times(asked), []
     for name in asked:
-        least = _column(table, name + AT_LEAST) if name in times else np.zeros(0)
-        known = _column(table, name)
+        least = column_of(table, name + AT_LEAST) if name in times else np.zeros(0)
+        known = column_of(table, name)
         numbers = statistics(known, least)
         counts = (f"{np.count_nonzero(np.isfinite(known)):,}", f"{np.count_nonzero(np.isfinite(least)):,}")
         rows.append((name, *counts, *(_cell(numbers.get(key)) for key in SHOWN)))
@@ -181,12 +188,6 @@ def _times(asked: list[str]) -> dict[str, float]:
 def _unit(name: str) -> str:
     quantity = name.split("@")[0]
     return next((unit for unit in UNITS["time"] if quantity == f"time_{unit}"), "")
-
-
-def _column(table: pa.Table, name: str) -> np.ndarray:
-    if name not in table.column_names:
-        return np.full(table.num_rows, np.nan)
-    return np.asarray(table[name].to_numpy(), dtype=float)
 
 
 def _cell(number: Number | None) -> str:

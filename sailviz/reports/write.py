@@ -68,9 +68,9 @@ def page_of(
 
         return flight_page(path, pictures=pictures, others=others)
     if path.suffix.lower() == TABLE:
-        return _of_table(path)
+        return _of_table(path, pictures)
     if is_sweep(source):
-        return _of_sweep(str(source), values)
+        return _of_sweep(str(source), values, pictures)
     return _of_scene(source, values, pictures, others, progress)
 
 
@@ -107,7 +107,7 @@ def _of_scene(
         return flight_page(made, scene, pictures=pictures, others=others, again=again)
 
 
-def _of_table(path: Path) -> Page:
+def _of_table(path: Path, pictures: bool) -> Page:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -117,14 +117,14 @@ def _of_table(path: Path) -> Page:
         table = pq.read_table(path, partitioning=None)
     except (OSError, pa.ArrowException, ValueError) as error:
         raise RecordingError(f"{path} cannot be read as the table of a sweep: {str(error).splitlines()[0]}") from None
-    return sweep_page(table, None, path=path)
+    return sweep_page(table, None, path=path, pictures=pictures)
 
 
-def _of_sweep(source: str, values: Mapping[str, Any]) -> Page:
+def _of_sweep(source: str, values: Mapping[str, Any], pictures: bool) -> Page:
     from sailviz.reports.sweep import sweep_page
     from sailviz.sweeps.definition import define
     from sailviz.sweeps.loop import fly_all
 
     definition: Definition = define(source, {}, None, None, (), None, dict(values))[0]
     found = fly_all(definition)
-    return sweep_page(found.to_arrow(), definition.scene(), again=f"sailviz sweep {source}")
+    return sweep_page(found.to_arrow(), definition.scene(), again=f"sailviz sweep {source}", pictures=pictures)

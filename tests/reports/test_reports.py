@@ -2,6 +2,7 @@
 
 import base64
 import hashlib
+import json
 import re
 import sys
 from html.parser import HTMLParser
@@ -16,9 +17,13 @@ from sailviz import load_scene, read, record, simulate, sweep
 from sailviz.cli import main
 from sailviz.constants import RADIUS_EARTH, YEAR
 from sailviz.deorbits.disposal import RULES, Descent, shares_within
+from sailviz.recording import digest
 from sailviz.recording.views.screenshot import has_vulkan
 from sailviz.reports.flight import flight_page
-from sailviz.reports.sweep import sweep_page
+from sailviz.reports.page import html_of
+from sailviz.reports.spread import far_words
+from sailviz.reports.sweep import facts_of, sweep_page
+from sailviz.reports.sweep_pictures import panels_of
 from sailviz.words import duration
 
 WICKED = '<img src=x onerror="alert(1)"> & {{ 7 * 7 }}'
@@ -202,3 +207,86 @@ def test_what_is_no_source_of_a_report_is_refused_and_nothing_is_written(fallen,
     assert "must end in .html" in refused(fallen, "-o", tmp_path / "page.pdf")
     monkeypatch.setitem(sys.modules, "jinja2", None)
     assert "sailviz[report]" in refused(fallen, "-o", out)
+
+
+def swept(columns, vary, draws=0):
+    """The table of a sweep, as sailviz writes it."""
+    facts = {
+        "scene": WICKED, "values": {"title": WICKED}, "vary": vary, "together": False, "draws": draws, "seed": 0,
+        "report": [], "sailviz": "0.1",
+    }  # fmt: skip
+    count = len(next(iter(columns.values())))
+    whole = {"index": np.arange(count), "status": ["flown"] * count, "ended": ["there"] * count} | columns
+    return pa.table(whole).replace_schema_metadata({b"sailviz.sweep": json.dumps(facts)})
+
+
+def test_a_sweep_over_one_or_two_keys_is_drawn_over_the_finer_one_and_bounds_apart():
+    pitch, mass = np.repeat([20.0, 30.0, 40.0], 2), np.tile([1.0, 2.0], 3)
+    time = np.array([5.0, 6.0, 4.0, 5.0, np.nan, np.nan])
+    least = np.where(np.isnan(time), 9.0, np.nan)
+    columns = {
+        "steering.pitch_deg": pitch, "device.mass_kg": mass, "time_d@there": time, "time_d@there at least": least
+    }  # fmt: skip
+    table = swept(columns, {"steering.pitch_deg": "", "device.mass_kg": ""})
+    (panel,) = panels_of(table, facts_of(table), ["time_d@there"])
+    assert (panel.quantity, panel.key) == ("time_d@there", "steering.pitch_deg")
+    assert [one.name for one in panel.series] == ["device.mass_kg 1", "device.mass_kg 2"]
+    for number, one in enumerate(panel.series):
+        assert np.array_equal(one.over, [20.0, 30.0, 40.0])
+        assert np.array_equal(one.values, time[number::2], equal_nan=True)
+        assert np.array_equal(one.least, least[number::2], equal_nan=True)
+
+
+def test_drawn_flights_are_shown_as_they_are_spread_with_their_percentiles():
+    time = np.concatenate([np.arange(1.0, 20.0), [np.nan]])
+    least = np.where(np.isnan(time), 30.0, np.nan)
+    columns = {"device.drag_coefficient": np.arange(20.0), "time_yr@there": time, "time_yr@there at least": least}
+    table = swept(columns, {"device.drag_coefficient": "normal"}, draws=20)
+    (panel,) = panels_of(table, facts_of(table), ["time_yr@there"])
+    assert np.array_equal(panel.values, time[:-1])
+    assert panel.least.tolist() == [30.0]
+    assert dict(panel.marks)["median"] == pytest.approx(10.5)
+
+
+def test_the_picture_of_a_sweep_is_in_its_page_and_words_stay_text():
+    columns = {"steering.pitch_deg": [1.0, 2.0, 3.0], "radius_au@end": [1.0, 1.2, 1.1]}
+    table = swept(columns, {"steering.pitch_deg": ""})
+    markup = Markup(html_of(sweep_page(table, None)))
+    (address,) = markup.addresses
+    assert base64.b64decode(address.removeprefix("data:image/png;base64,")).startswith(b"\x89PNG")
+    assert WICKED in markup.words
+    assert not Markup(html_of(sweep_page(table, None, pictures=False))).addresses
+
+
+@pytest.fixture(scope="module")
+def windy(tmp_path_factory):
+    """A recording of forty flights through the solar wind, with and without control."""
+    path = tmp_path_factory.mktemp("windy") / "windy.rrd"
+    short = {"propagation.duration_yr": 0.1, "propagation.outputs": 15}
+    scene = load_scene("wind/voltage-limits")
+    ensembles = [{"flights": 40} | {k: v for k, v in one.items() if k != "flights"} for one in scene.raw["ensemble"]]
+    record(simulate(scene.with_values({**short, "ensemble": ensembles, "expect": []})), path)
+    return path
+
+
+def test_a_report_of_ensembles_says_how_far_from_the_calm_flight_they_end(windy):
+    page = flight_page(windy, pictures=False)
+    recording = read(windy)
+    names = [name for name in recording.entities if name.startswith("/ensemble/") and name.count("/") == 2]
+    assert len(names) == 3
+    told = " ".join(page.answer)
+    for name in names:
+        facts, calm = recording[f"{name}/facts"], recording[name]["nominal_position_m"][-1]
+        r, angle = np.ravel(facts["end_radius_m"]), np.ravel(facts["end_azimuth_rad"])
+        first = recording[name]["nominal_position_m"][0]
+        across = np.cross([0.0, 0.0, 1.0], first / np.linalg.norm(first))
+        places = r[:, None] * (np.cos(angle)[:, None] * first / np.linalg.norm(first) + np.sin(angle)[:, None] * across)
+        half = far_words(float(np.median(np.linalg.norm(places - calm, axis=1))))
+        assert f"of 40 flights half end within {half} of the calm flight" in told
+    table = next(section for section in page.sections if section.heading == "Uncertainty").tables[0]
+    assert len(table.head) == 4
+    assert {"flights", "seed", "method"} <= {row[0] for row in table.rows}
+    motion = next(section for section in page.sections if section.heading == "Motion").tables[0]
+    assert not [cell for row in motion.rows for cell in row if "nan" in cell or "e-1" in cell]
+    inputs = next(section for section in page.sections if section.heading == "Inputs").tables[0]
+    assert digest(windy) in [row[1] for row in inputs.rows]

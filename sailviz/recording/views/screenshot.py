@@ -10,7 +10,7 @@ import io
 import math
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
@@ -154,7 +154,8 @@ class Studio:
     def main(self) -> str:
         """The name of the view that shows the flight."""
         names, first = self._names(), MAIN_TOGETHER if read(self._path).flights else MAIN
-        return next((name for wanted in first for name in names if name.startswith(wanted)), next(iter(names)))
+        found = (named(wanted, names) for wanted in first)
+        return next((name for name in found if name is not None), next(iter(names)))
 
     @property
     def views(self) -> list[str]:
@@ -205,9 +206,10 @@ class Studio:
         return PictureReport(Path(png), (width, height), errors, warnings, time.monotonic() - started)
 
     def _find(self, name: str) -> str:
-        for title, identity in self._names().items():
-            if title.lower().startswith(name.lower()):
-                return identity
+        names = self._names()
+        title = named(name, names)
+        if title is not None:
+            return names[title]
         raise RecordingError(f"{self._path} has no view {name}; it has {', '.join(self.views)}")
 
     def _show(self, view: str | None, active: str | None) -> str | None:
@@ -250,6 +252,13 @@ class Studio:
                 break
             time.sleep(0.1)
         return last
+
+
+def named(word: str, names: Iterable[str]) -> str | None:
+    """The name that is a word but for what stands in brackets, else the first that begins with it; None for none."""
+    begin = [name for name in names if name.lower().startswith(word.lower())]
+    same = (name for name in begin if name.split(" (")[0].split(" [")[0].lower() == word.lower())
+    return next(same, begin[0] if begin else None)
 
 
 def fraction(at: float | str) -> float:

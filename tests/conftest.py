@@ -25,6 +25,15 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # begun in the background
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+EXTRAS = {"deorbit/drag-sail": "sgp4"}  # shipped scene -> what has to be installed to fly it
+
+
+def pytest_runtest_setup(item):
+    given = item.callspec.params.values() if hasattr(item, "callspec") else ()
+    for extra in {EXTRAS[value] for value in given if isinstance(value, str) and value in EXTRAS}:
+        pytest.importorskip(extra)
+
+
 class Flight(NamedTuple):
     """states (6 or 7, n) at the times asked for, as far as they were reached; events [(index, time, state (7,))]."""
 

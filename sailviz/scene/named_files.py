@@ -8,6 +8,7 @@ import stat
 from pathlib import Path, PureWindowsPath
 from typing import TYPE_CHECKING
 
+from sailviz.shipped import shipped_scenes, shipped_sweeps
 from sailviz.words import nearest, shown
 
 if TYPE_CHECKING:
@@ -29,6 +30,8 @@ def folder_of(scene: Scene) -> Path:
 
 def folder_beside(source: str) -> Path:
     """The same for what a scene was loaded from: a path or a shipped name."""
+    if not os.path.isfile(source) and (shipped := (shipped_scenes() | shipped_sweeps()).get(source)) is not None:
+        return shipped.parent
     return Path(os.path.abspath(os.path.dirname(source) if os.path.isfile(source) else ""))
 
 

@@ -147,7 +147,7 @@ def _in_frame(p: Plan, orbit: orbital.Elements) -> orbital.Elements:
     r, v = orbital.state(e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument, 0.0, p.body.mu)
     e = orbital.elements(_turn(p) @ r, _turn(p) @ v, p.body.mu)
     scalars: list[Any] = [float(x) for x in (e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument)]
-    return orbital.Elements(*scalars, 0.0)
+    return orbital.Elements(*[*scalars, 0.0])
 
 
 def _shells(p: Plan) -> tuple[Shell, ...]:

@@ -116,11 +116,11 @@ class SceneSky:
     @property
     def parameters(self) -> sky.Parameters:
         """Bodies and light."""
-        scene, kind = self.scene, light_kind(self.scene)
-        said = scene.light
+        kind = light_kind(self.scene)
         found = sky.Parameters(bodies=len(self.words), light=KINDS[kind])
         if "moon" in self.words:
             found = found._replace(moon=self.words.index("moon"))
+        said = self.scene.light
         if said is not None and said.radius is not None:
             found = found._replace(light_radius=said.radius)
         elif kind == "centre":
@@ -128,32 +128,42 @@ class SceneSky:
         if kind == "ephemeris":
             found = found._replace(light_body=self.words.index("sun") if "sun" in self.words else 0)
         elif kind == "circular":
-            distance = AU if said is None or said.distance is None else said.distance
-            period = None if said is None else said.period
-            if period is None:
-                far = said is not None and said.distance is not None
-                mu = MU_SUN if said is None or said.mu is None else said.mu
-                period = 2 * np.pi * np.sqrt(distance**3 / mu) if far else EVEN_PERIOD
-            tilt = even_obliquity(scene)
-            found = found._replace(
-                distance=distance,
-                longitude=even_longitude(scene),
-                rate=2 * np.pi / period,
-                ahead_y=float(np.cos(tilt)),
-                ahead_z=float(np.sin(tilt)),
-            )
+            found = self._even(found)
         elif kind == "fixed":
-            assert said is not None
-            assert said.direction is not None
-            assert said.distance is not None
-            x, y, z = frames.unit(said.direction)
-            found = found._replace(distance=said.distance, towards_x=x, towards_y=y, towards_z=z)
-        shading = shades(scene)
+            found = self._fixed(found)
+        shading = shades(self.scene)
         if shading:
             central = self.body.radius if self.centre in shading else 0.0
-            shadow = CONE if shadow_kind(scene) == "cone" else CYLINDER
+            shadow = CONE if shadow_kind(self.scene) == "cone" else CYLINDER
             found = found._replace(shadow=shadow, centre_radius=central)
         return found
+
+    def _even(self, found: sky.Parameters) -> sky.Parameters:
+        """With a light that goes evenly round on a circle: by Kepler's period where its distance is said, else once a
+        year."""
+        said = self.scene.light
+        far = None if said is None else said.distance
+        distance, period = AU if far is None else far, None if said is None else said.period
+        if period is None:
+            mu = MU_SUN if said is None or said.mu is None else said.mu
+            period = EVEN_PERIOD if far is None else 2 * np.pi * np.sqrt(distance**3 / mu)
+        tilt = even_obliquity(self.scene)
+        return found._replace(
+            distance=distance,
+            longitude=even_longitude(self.scene),
+            rate=2 * np.pi / period,
+            ahead_y=float(np.cos(tilt)),
+            ahead_z=float(np.sin(tilt)),
+        )
+
+    def _fixed(self, found: sky.Parameters) -> sky.Parameters:
+        """With a light that stays where it is."""
+        said = self.scene.light
+        assert said is not None
+        assert said.direction is not None
+        assert said.distance is not None
+        x, y, z = frames.unit(said.direction)
+        return found._replace(distance=said.distance, towards_x=x, towards_y=y, towards_z=z)
 
     @property
     def magnetosphere(self) -> magnetosphere.Parameters:

@@ -9,13 +9,14 @@ import copy
 import random
 import time
 import tomllib
+from contextlib import chdir
 from datetime import date, datetime
 
 import pytest
 
 from sailviz.errors import SceneError
 from sailviz.scene.loading import load_scene, schema
-from sailviz.shipped import shipped_scenes
+from sailviz.shipped import shipped_folder, shipped_scenes
 
 RAW = [tomllib.loads(path.read_text(encoding="utf-8")) for path in shipped_scenes().values()]
 SECTIONS = sorted({key for raw in RAW for key in raw})
@@ -41,6 +42,12 @@ NUMBERS = [
 WORDS = ["", "sun", "earth", "as designed", "x" * 5000, "a\nb", "{}", "2031-04-01", "../x", "\0", "\ud800", "end"]
 TABLES = [{}, {"kind": "none"}, [], [None], [1, 2, 3], [[0, 1], [1, 2]]]
 OTHER = [True, None, date(2031, 1, 1), datetime(9999, 12, 31), *TABLES]
+
+
+@pytest.fixture(autouse=True, scope="module")
+def beside_the_files_that_scenes_name():
+    with chdir(shipped_folder("scenes") / "deorbit"):
+        yield
 
 
 def places(value, path=()):

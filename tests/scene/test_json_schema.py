@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import copy
 import tomllib
+from contextlib import chdir
 from datetime import date, datetime
 
 import jsonschema
 import pytest
 
 from sailviz.scene.loading import load_scene, schema
-from sailviz.shipped import shipped_scenes
+from sailviz.shipped import shipped_folder, shipped_scenes
 from sailviz.units import UNITS
 
 from .small import SMALL, with_parts
@@ -26,6 +27,12 @@ def plain(value):
     if isinstance(value, list):
         return [plain(part) for part in value]
     return value.isoformat() if isinstance(value, (date, datetime)) else value
+
+
+@pytest.fixture(autouse=True, scope="module")
+def beside_the_files_that_scenes_name():
+    with chdir(shipped_folder("scenes") / "deorbit"):
+        yield
 
 
 @pytest.mark.parametrize("name", sorted(RAW))

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import copy
 import tomllib
+from contextlib import chdir
 from datetime import UTC, time
 
+import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from sailviz.errors import SceneError
 from sailviz.scene.loading import load_scene, schema
-from sailviz.shipped import shipped_scenes
+from sailviz.shipped import shipped_folder, shipped_scenes
 from sailviz.simulation.plan import plan
 
 RAW = {name: tomllib.loads(path.read_text(encoding="utf-8")) for name, path in shipped_scenes().items()}
@@ -23,6 +25,12 @@ def words_of(value):
     if isinstance(value, list):
         return set().union(*map(words_of, value))
     return {value} if isinstance(value, str) else set()
+
+
+@pytest.fixture(autouse=True, scope="module")
+def beside_the_files_that_scenes_name():
+    with chdir(shipped_folder("scenes") / "deorbit"):
+        yield
 
 
 def without_sentences(value):

@@ -1,6 +1,7 @@
 """Starts that are looked up: the state at the start against what the file or the ephemeris says by another way."""
 
 import shutil
+import sys
 from datetime import datetime
 from pathlib import Path
 
@@ -292,3 +293,11 @@ def test_a_start_in_a_message_of_our_own_flies_on_as_the_flight_did(folder):
     )
     again = sailviz.simulate(half)
     assert np.linalg.norm(again.position[-1] - whole.position[-1]) < 20.0
+
+
+def test_the_shipped_scene_of_an_element_set_is_checked_without_sgp4_and_flown_with_it(monkeypatch):
+    monkeypatch.setitem(sys.modules, "sgp4", None)
+    scene = sailviz.load_scene("deorbit/drag-sail")
+    assert scene.epoch_utc == datetime(2026, 5, 1, 6)
+    with pytest.raises(SceneError, match=r'extra "tle": pip install "sailviz\[tle\]"'):
+        plan(scene)

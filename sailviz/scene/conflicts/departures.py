@@ -10,8 +10,9 @@ from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.records import device_of, start_of, steering_of
 from sailviz.scene.conflicts.start_points import has_plane, radius_of_body
 from sailviz.scene.device import Thruster
+from sailviz.scene.phases import Phase, StateOfOne, Until, steering_of_first, until_of
 from sailviz.scene.start import DisplacedStart
-from sailviz.scene.steering import TableSteering
+from sailviz.scene.steering import Steering, TableSteering
 from sailviz.words import duration, length
 
 if TYPE_CHECKING:
@@ -92,19 +93,73 @@ def propellant(scene: Scene) -> Faults:
 
 
 def burns_of(scene: Scene) -> list[Burn]:
-    """The throttle over the run, piece by piece: straight lines or steps of a table, inside the active times."""
-    steering, end = scene.steering, scene.propagation.duration
-    pieces: list[Burn] = [(0.0, end, 1.0, 1.0)]
+    """The throttle over the run, piece by piece: straight lines or steps of a table, inside the active times, at the
+    level of each phase. Where a phase ends by what happens on the way, the rest counts as its thriftiest phase."""
+    if not scene.phase:
+        return _burns(scene, scene.steering, 0.0, scene.propagation.duration)
+    begin, found = 0.0, list[Burn]()
+    for i, phase in enumerate(scene.phase):
+        last = _end_of_phase(scene, phase, begin)
+        if last is None:
+            shares = [_level(scene, one) * _least(_steered(scene, one)) for one in scene.phase[i:]]
+            return found + _at_level(_burns(scene, None, begin, scene.propagation.duration), min(shares))
+        found += _at_level(_burns(scene, _steered(scene, phase), begin, last), _level(scene, phase))
+        begin = last
+    return found
+
+
+def _end_of_phase(scene: Scene, phase: Phase, begin: float) -> float | None:
+    """When, s, a phase ends at the latest that the run allows; None where that is not known beforehand."""
+    whole = scene.propagation.duration
+    try:
+        until = until_of(phase)
+    except ValueError:  # which the questions about phases tell
+        return None
+    if until is None:
+        return whole
+    if isinstance(until, Until) and until.duration is not None:
+        return min(begin + until.duration, whole)
+    if isinstance(until, Until) and until.time is not None:
+        return min(max(begin, until.time), whole)
+    return None
+
+
+def _steered(scene: Scene, phase: Phase) -> Steering | None:
+    """The law of the scene's device in a phase."""
+    if scene.device.steering is None:
+        said = steering_of_first(scene, phase)
+        return scene.steering if said is None else said
+    state = phase.state_of(scene.device)
+    own = state.steering if isinstance(state, StateOfOne) else None
+    return scene.device.steering if own is None else own
+
+
+def _level(scene: Scene, phase: Phase) -> float:
+    return phase.state_of(scene.device).level
+
+
+def _least(steering: Steering | None) -> float:
+    """The lowest throttle that a law asks for."""
+    return min(steering.throttle) if isinstance(steering, TableSteering) and steering.throttle else 1.0
+
+
+def _at_level(burns: list[Burn], level: float) -> list[Burn]:
+    return [(begin, end, level * low, level * high) for begin, end, low, high in burns] if level > 0.0 else []
+
+
+def _burns(scene: Scene, steering: Steering | None, start: float, end: float) -> list[Burn]:
+    """The same from a start, from which a table counts, to an end, s."""
+    pieces: list[Burn] = [(start, end, 1.0, 1.0)]
     if isinstance(steering, TableSteering) and steering.throttle is not None:
-        time, throttle = steering.time, steering.throttle
+        time, throttle = [start + moment for moment in steering.time], steering.throttle
         held = steering.interpolation == "hold"
-        pieces = [(min(0.0, time[0]), time[0], throttle[0], throttle[0])]
+        pieces = [(min(start, time[0]), time[0], throttle[0], throttle[0])]
         for i in range(len(time) - 1):
             pieces.append((time[i], time[i + 1], throttle[i], throttle[i] if held else throttle[i + 1]))
         pieces.append((time[-1], max(end, time[-1]), throttle[-1], throttle[-1]))
-    windows = [(0.0, end)] if scene.device.active is None else scene.device.active
+    windows = [(start, end)] if scene.device.active is None else scene.device.active
     return [
-        cut for piece in pieces for first, last in windows if (cut := cut_to(piece, max(first, 0.0), min(last, end)))
+        cut for piece in pieces for first, last in windows if (cut := cut_to(piece, max(first, start), min(last, end)))
     ]
 
 

@@ -18,6 +18,8 @@ from sailviz.words import duration, shown
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
+    Burning = tuple[list[departures.Burn], Thruster, float]
+
 # laws that depend on time and state alone and need no table
 STEERS_BESIDE = (
     "sun-facing",
@@ -139,32 +141,47 @@ def _alone(view: Scene) -> Faults:
 def burnt_out(scene: Scene) -> float | None:
     """When, s, the thrusters of a craft have burnt all of its mass; None where they do not within the run. Sizes of
     constant thrust take away evenly, constant accelerations a share."""
-    views = [scene, *(scene.alone(device) for device in scene.beside)]
-    burns = []
-    for view in views:
-        device = view.device
-        if isinstance(device, Thruster) and device.specific_impulse is not None:
-            burns.append((departures.burns_of(view), device, STANDARD_GRAVITY * device.specific_impulse))
-    edges = {0.0, scene.propagation.duration}
-    for pieces, _, _ in burns:
-        for begin, end, low, high in pieces:
-            edges |= {begin, end}
-            if low != high:
-                edges |= {begin + k / PIECES * (end - begin) for k in range(1, PIECES)}
+    burns = _burns(scene)
     mass = start = scene.device.mass or 1.0
-    times = sorted(time for time in edges if 0.0 <= time <= scene.propagation.duration)
-    for begin, end in pairwise(times):
-        rate = share = 0.0
-        for pieces, device, exhaust in burns:
-            throttle = sum(0.5 * (c[2] + c[3]) for piece in pieces if (c := departures.cut_to(piece, begin, end)))
-            rate += throttle * (device.thrust or 0.0) / exhaust
-            share += throttle * (device.acceleration or 0.0) / exhaust
+    for begin, end in pairwise(_times(burns, scene.propagation.duration)):
+        rate, share = _rates(burns, begin, end)
         span = end - begin
         left = mass * exp(-share * span) + (rate * expm1(-share * span) / share if share else -rate * span)
         if left <= start * exp(-departures.LARGEST_RATIO):
             return begin + span * mass / (mass - left) if mass > left else begin
         mass = left
     return None
+
+
+def _burns(scene: Scene) -> list[Burning]:
+    """Of each thruster that burns propellant its throttle over the run, itself, and the speed of its exhaust, m/s."""
+    found = []
+    for view in (scene, *(scene.alone(device) for device in scene.beside)):
+        device = view.device
+        if isinstance(device, Thruster) and device.specific_impulse is not None:
+            found.append((departures.burns_of(view), device, STANDARD_GRAVITY * device.specific_impulse))
+    return found
+
+
+def _times(burns: list[Burning], end: float) -> list[float]:
+    """Moments, s, between which every throttle is as good as constant."""
+    edges = {0.0, end}
+    for pieces, _, _ in burns:
+        for first, last, low, high in pieces:
+            edges |= {first, last}
+            if low != high:
+                edges |= {first + k / PIECES * (last - first) for k in range(1, PIECES)}
+    return sorted(time for time in edges if 0.0 <= time <= end)
+
+
+def _rates(burns: list[Burning], begin: float, end: float) -> tuple[float, float]:
+    """What all thrusters take from the mass between two such moments, kg/s, and the share of it that they take, 1/s."""
+    rate = share = 0.0
+    for pieces, device, exhaust in burns:
+        throttle = sum(0.5 * (c[2] + c[3]) for piece in pieces if (c := departures.cut_to(piece, begin, end)))
+        rate += throttle * (device.thrust or 0.0) / exhaust
+        share += throttle * (device.acceleration or 0.0) / exhaust
+    return rate, share
 
 
 def _word(name: str | None) -> str:

@@ -7,7 +7,6 @@ What reads the files is imported by the scenes that name some: `check` answers a
 from __future__ import annotations
 
 from datetime import UTC, date, datetime
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -121,14 +120,13 @@ def _place(start: TleStart | OemStart | SmallBodyStart) -> str:
 
 
 def element_set(scene: Scene, start: TleStart) -> Faults:
-    """A set that can be read, not too far from the epoch, round the Earth."""
+    """A set that can be read, not too far from the epoch, round the Earth. Whether SGP4 is installed is told when it is
+    flown: the file is the same everywhere."""
     from sailviz.exchange.element_sets import FARTHEST
 
     found: Faults = []
     if scene.body != "earth":
         found.append(("body", 'element sets are of satellites of the Earth: body = "earth"'))
-    if find_spec("sgp4") is None:
-        found.append(("start.kind", 'element sets need the extra "tle": pip install "sailviz[tle]"'))
     try:
         elements = element_set_of(scene, start)
     except ValueError as error:

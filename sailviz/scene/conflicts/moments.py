@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from datetime import timedelta
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
@@ -92,26 +93,7 @@ def unknown_here(scene: Scene, item: Crossing, place: str) -> Faults:
     stem = item.quantity
     if stem is None:
         return []
-    where, device = f"{place}.{stem}", device_of(scene)
-    if stem in OVER_THE_SURFACE and not has_surface(scene):
-        return [(where, "the body has no radius to measure an altitude from")]
-    if stem == "mass" and scene.device.mass is None:
-        return [(where, "the device gives no mass")]
-    if stem in OF_A_DEVICE and isinstance(scene.device, NoDevice):
-        return [(where, "nothing is steered and nothing pushes: the device is none")]
-    if stem in OF_A_BRAKE and not device.tether:
-        return [(where, "only a plasma brake has it")]
-    if stem in OF_A_DENSITY and not ionosphere_of(scene).density:
-        return [(where, "needs an ionosphere with a density, not a given force")]
-    if stem == "air_drag" and scene.environment.atmosphere is None:
-        return [(where, "there is no environment.atmosphere")]
-    if stem == "sun_distance" and not (has_sky(scene) and light_away(scene)):
-        return [(where, "the light is at the centre: watch radius, or nothing here depends on where the light is")]
-    if stem == "moon_distance" and "moon" not in kernel_bodies(scene):
-        return [(where, 'the Moon is not there: environment.gravity_of = ["moon"]')]
-    if stem == "sunlit_fraction" and not shades(scene) and not lit_and_dark(scene):
-        return [(where, "a shadow is known round the Earth, with an epoch or environment.sun_right_ascension")]
-    return []
+    return [(f"{place}.{stem}", words) for stems, lacks, words in LACKING if stem in stems and lacks(scene)][:1]
 
 
 def lit_and_dark(scene: Scene) -> bool:
@@ -171,3 +153,37 @@ def expected_moments(scene: Scene) -> Faults:
         if expected.at_time is not None and not 0 <= expected.at_time <= scene.propagation.duration:
             found.append((f"expect[{i}].at_time", "outside the run"))
     return found
+
+
+# quantities, where a scene does not know them, and in which words that is told; the first that holds is
+LACKING: tuple[tuple[tuple[str, ...], Callable[[Scene], bool], str], ...] = (
+    (OVER_THE_SURFACE, lambda scene: not has_surface(scene), "the body has no radius to measure an altitude from"),
+    (("mass",), lambda scene: scene.device.mass is None, "the device gives no mass"),
+    (
+        OF_A_DEVICE,
+        lambda scene: isinstance(scene.device, NoDevice),
+        "nothing is steered and nothing pushes: the device is none",
+    ),
+    (OF_A_BRAKE, lambda scene: not device_of(scene).tether, "only a plasma brake has it"),
+    (
+        OF_A_DENSITY,
+        lambda scene: not ionosphere_of(scene).density,
+        "needs an ionosphere with a density, not a given force",
+    ),
+    (("air_drag",), lambda scene: scene.environment.atmosphere is None, "there is no environment.atmosphere"),
+    (
+        ("sun_distance",),
+        lambda scene: not (has_sky(scene) and light_away(scene)),
+        "the light is at the centre: watch radius, or nothing here depends on where the light is",
+    ),
+    (
+        ("moon_distance",),
+        lambda scene: "moon" not in kernel_bodies(scene),
+        'the Moon is not there: environment.gravity_of = ["moon"]',
+    ),
+    (
+        ("sunlit_fraction",),
+        lambda scene: not shades(scene) and not lit_and_dark(scene),
+        "a shadow is known round the Earth, with an epoch or environment.sun_right_ascension",
+    ),
+)

@@ -117,6 +117,17 @@ def test_all_thrusters_together_may_not_burn_the_whole_mass() -> None:
     assert faults(pair, **{"device.1.active_d": [[0, 20]], "propagation.duration_d": 80})
 
 
+def test_thrusters_that_a_phase_switches_off_burn_nothing_in_it() -> None:
+    thruster = {"kind": "thruster", "thrust_N": 1, "specific_impulse_s": 300, "mass_kg": 2800}
+    pair = scene(thruster, {**thruster, "steering": OWN}, steering=OWN)
+    del pair["device"][1]["mass_kg"]
+    off = [{"name": "thruster 2", "on": False}]
+    first, last = {"name": "both", "until": "duration_d = 20"}, {"name": "one", "device": off}
+    load_scene({**pair, "phase": [first, last]}, {"propagation.duration_d": 74})  # 20 d of both and 55.3 of one are all
+    assert "burn the whole mass in 75." in faults({**pair, "phase": [first, last]})[0]
+    load_scene({**pair, "phase": [{**first, "until": "radius_au = 2"}, last]}, {"propagation.duration_d": 94})
+
+
 def test_the_mass_is_that_of_the_craft_whoever_gives_it() -> None:
     sail = {"kind": "solar-sail", "area_m2": 1000}
     found = load_scene(scene(sail, {**sail, "steering": {"kind": "sun-facing"}}, {**THRUSTER, "mass_kg": 90}))

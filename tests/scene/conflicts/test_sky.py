@@ -58,8 +58,8 @@ REFUSED = [
     (EARTH, law("optimal", costates=[1, 1, 1]), "steering.kind", "was solved for light at the centre"),
     (OWN, law("optimal", costates=[1, 1, 1]), "steering.kind", "was solved for light at the centre"),
     (
-        EARTH, law("smoothed-transfer", radius_au=1.5, costates=[1.0, 1.0, 1.0]), "steering.kind",
-        "was solved for light at the centre",
+        {**OWN, "device": ELECTRIC}, law("smoothed-transfer", radius_au=1.5, costates=[1.0, 1.0, 1.0]),
+        "steering.kind", "was solved for light at the centre",
     ),
     (
         OWN, {"start": {"kind": "displaced", "radius_au": 0.9, "elevation_deg": 10, "rate_ratio": 1}}, "start.kind",

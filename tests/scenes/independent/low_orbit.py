@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from datetime import datetime, timedelta
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 from independent.constants import AU, J2, J3, J4, MU_EARTH, RADIUS_EARTH, ROTATION, body
@@ -97,16 +98,37 @@ def plasma_table():
 
 
 @cache
-def air_table(levels, ap, day):
+def days_of(file):
+    """Date -> (F10.7 observed, its centred mean of 81 days, daily Ap) of a file of CelesTrak's, by columns."""
+    rows = [line.split(",") for line in file.read_text().splitlines()[1:]]
+    return {row[0]: (float(row[24]), float(row[27]), float(row[20])) for row in rows if row[20]}
+
+
+def air_of_day(scene, day):
+    """The same for a noon of real weather: the flux of the day before, its mean and the Ap of the day."""
+    days = days_of(Path(scene.source).parent / scene.environment.space_weather.file)
+    _, mean, ap = days[str(day)]
+    return air_table((days[str(day - timedelta(days=1))][0],), ap, day, mean)
+
+
+@cache
+def air_table(levels, ap, day, mean=None):
     """ln of the density (kg/m3) at solar levels, from NRLMSIS 2.1, at noon of a day: what depends on longitude and UT
     off, eight local times made 24 by their Fourier sum."""
     from pymsis import calculate
 
     off = {"all_ut_effects": 0, "longitudinal": 0, "mixed_ut_long": 0, "mixed_ap_ut_long": 0}
     latitude, height = np.linspace(-90, 90, 19), np.arange(100.0, 1500.1, 10)
+    if mean is not None:  # of real weather, a table for each day
+        height = np.array([*np.arange(100.0, 250, 10), *np.arange(250.0, 1500.1, 25)])
     values = []
     for level in levels:
-        drivers = {"f107s": [level], "f107as": [level], "aps": [[ap] * 7], "version": 2.1} | off
+        drivers = {
+            "f107s": [level],
+            "f107as": [level if mean is None else mean],
+            "aps": [[ap] * 7],
+            "version": 2.1,
+        } | off
         noon = [f"{day}T12:00"]  # longitude -180 deg has midnight at noon UT
         seen = calculate(noon, np.arange(-180.0, 180, 45), latitude, height, **drivers)[0, ..., 0]
         log, angle = np.log(seen.astype(float)), np.radians(np.arange(0, 360, 45))
@@ -124,14 +146,22 @@ def air_drag(scene):
     if air is None:
         return None
     if air.kind == "nrlmsis-2.1":
-        flux = scene.environment.solar_flux
-        levels = (70.0, 100.0, 145.0, 200.0) if flux == "cycle" else (flux,)
-        # a run of hours: the noons before and after it, its density between them on a straight line
+        level = scene.environment.solar_flux
+        levels = (70.0, 100.0, 145.0, 200.0) if level == "cycle" else (level,)
+        # the noons before and after a run of hours, or those about one through real weather; straight lines between
         begin = datetime(2000, 1, 1, 12) + timedelta(days=days_since_j2000(scene, 0.0))
         before = (begin - timedelta(hours=12)).replace(hour=12, minute=0, second=0, microsecond=0)
-        assert begin + timedelta(seconds=scene.propagation.duration) <= before + timedelta(days=1)
-        noons = np.array([0.0, 86400.0]) + (before - begin).total_seconds()
-        tables = [air_table(levels, air.ap, (before + timedelta(days=i)).date()) for i in range(2)]
+        last = int((begin + timedelta(seconds=scene.propagation.duration) - before) / timedelta(days=1)) + 1
+        assert last == 1 or scene.environment.space_weather is not None
+        days = [(before + timedelta(days=i)).date() for i in range(last + 1)]
+        noons = 86400.0 * np.arange(last + 1) + (before - begin).total_seconds()
+        if scene.environment.space_weather is not None:
+            levels, tables = (70.0,), [air_of_day(scene, day) for day in days]
+        else:
+            tables = [air_table(levels, air.ap, day) for day in days]
+
+    def flux(t):
+        return levels[0] if len(levels) == 1 else solar_flux(scene, t)
 
     def drag(t, r, v, mass, area):
         if air.kind == "exponential":
@@ -140,8 +170,9 @@ def air_drag(scene):
             )
         else:
             where = place(scene, t, r)
-            log = [np.interp(solar_flux(scene, t), levels, table(where).ravel()) for table in tables]
-            density = np.exp(np.interp(t, noons, log))
+            i = min(max(int(np.searchsorted(noons, t, side="right")) - 1, 0), len(noons) - 2)
+            log = [np.interp(flux(t), levels, table(where).ravel()) for table in tables[i : i + 2]]
+            density = np.exp(np.interp(t, noons[i : i + 2], log))
         u = v - np.cross(spin_of_earth(scene), r)
         return -0.5 * density * craft.drag_coefficient * area / mass * np.linalg.norm(u) * u
 

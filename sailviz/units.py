@@ -22,6 +22,7 @@ UNITS: dict[str, dict[str, float]] = {
     "pressure": {"Pa": 1.0, "nPa": 1e-9, "uN_m2": 1e-6},
     "irradiance": {"W_m2": 1.0},
     "temperature": {"K": 1.0},
+    "torque": {"N_m": 1.0},
     "power": {"W": 1.0, "mW": 1e-3, "kW": 1e3},
     "force": {"N": 1.0, "mN": 1e-3, "uN": 1e-6},
     "force_per_length": {"N_m": 1.0, "nN_m": 1e-9, "mN_km": 1e-6},

@@ -45,6 +45,7 @@ SI = {  # endings of the names of columns; the longest that fits counts
     "_m_s2": "m/s²",
     "_s": "s",
     "_rad": "rad",
+    "_rad_s": "rad/s",
     "_kg": "kg",
     "_kg_m3": "kg/m³",
     "_m3": "1/m³",

@@ -111,6 +111,7 @@ def model(
     sky: dict[str, Sequence[float]] | None = None,
     sky_table: np.ndarray[Any, Any] | None = None,
     film: Sequence[float] = (),
+    wheel: Sequence[float] = (),
     user_steering: int = 0,
     user_force: int = 0,
 ) -> Model:
@@ -122,7 +123,8 @@ def model(
     sail for which a primer law steers, id and parameters. The callbacks of steering and device belong to the kinds
     CALLED; forces add up; burns : one of them burns propellant. sky : Parameters of the sky's parts by name, `sky`,
     `magnetosphere`, `by_light`, `pushed`; sky_table of `environment.sky.packed`; film : Numbers of
-    `propulsion.film_ageing`, of a film that ages or whose temperature is asked for.
+    `propulsion.film_ageing`, of a film that ages or whose temperature is asked for;
+    wheel : Numbers of `propulsion.esail_wheel`, of a wheel that is a body.
     """
     parameters = np.zeros(1, PARAMETERS)
     p = parameters[0]
@@ -138,6 +140,7 @@ def model(
         "air": air,
         "plasma": plasma,
         "film": film,
+        "wheel": wheel,
     }
     parts |= sky or {}
     pushed = int(parts["pushed"][0]) if "pushed" in parts else NO_DEVICE

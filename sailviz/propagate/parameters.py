@@ -15,7 +15,7 @@ import numpy as np
 
 from sailviz.compiled import late, layout
 from sailviz.environment import atmosphere, gravity, grid, ionosphere, magnetosphere, sky, solar_level, sun, third_body
-from sailviz.propulsion import electric_sail, film_ageing, plasma_brake, solar_sail, thruster
+from sailviz.propulsion import electric_sail, esail_wheel, film_ageing, plasma_brake, solar_sail, thruster
 from sailviz.steering import attitude, by_light
 
 
@@ -110,6 +110,7 @@ class Parameters(NamedTuple):
     by_light: by_light.Parameters
     pushed: Pushed
     film: film_ageing.Numbers
+    wheel: esail_wheel.Numbers
     callbacks: Callbacks
     places: Places
 

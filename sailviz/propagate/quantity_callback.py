@@ -35,7 +35,8 @@ OF_LOW_ORBIT = (
 )  # fmt: skip
 OF_SKY = ("sun_distance", "moon_distance")  # known to sky_quantities
 OF_FILM = ("dose", "film_temperature")  # known to film_quantities
-QUANTITIES = (*OF_STATE, *OF_CRAFT, *OF_LOW_ORBIT, *OF_SKY, *OF_FILM)
+OF_WHEEL = ("spin_rate", "modulation", "thrust_lost", "wheel_torque")  # known to wheel_callback
+QUANTITIES = (*OF_STATE, *OF_CRAFT, *OF_LOW_ORBIT, *OF_SKY, *OF_FILM, *OF_WHEEL)
 (
     TIME, RADIUS, ALTITUDE, ELEVATION, HEIGHT, LONGITUDE, SPEED, RADIAL_SPEED, TRANSVERSE_SPEED, FLIGHT_PATH_ANGLE,
     ENERGY, ANGULAR_MOMENTUM, ANGULAR_MOMENTUM_Z, MASS, SEMI_MAJOR_AXIS, ECCENTRICITY, INCLINATION, RAAN, TRUE_ANOMALY,
@@ -43,6 +44,7 @@ QUANTITIES = (*OF_STATE, *OF_CRAFT, *OF_LOW_ORBIT, *OF_SKY, *OF_FILM)
     PITCH, CONE, CLOCK, THRUST_ACCELERATION,
     SUNLIT_FRACTION, AIR_DRAG, PLASMA_DENSITY, PLASMA_FORCE, TETHER_VOLTAGE, TETHER_CURRENT, TETHER_POWER, TETHER_TILT,
     SUN_DISTANCE, MOON_DISTANCE, DOSE, FILM_TEMPERATURE,
+    SPIN_RATE, MODULATION, THRUST_LOST, WHEEL_TORQUE,
 ) = range(len(QUANTITIES))  # fmt: skip
 MAGNETOPAUSE = len(QUANTITIES)  # how far outside it the craft is, m: no quantity of a scene, but of "wind on"
 INVERSE = ("semi_major_axis", "apoapsis", "apogee_altitude")  # watched as -1 / (distance from the centre, m)

@@ -147,5 +147,9 @@ VALUES: dict[str, Value] = {
     "electrochromic_state": _acted("electrochromic_state"),
     "dose": _of_film("dose_yr", YEAR),
     "film_temperature": _of_film("temperature_K"),
+    "spin_rate": _acted("spin_rate_rad_s"),
+    "modulation": _acted("modulation"),
+    "thrust_lost": _acted("thrust_lost"),
+    "wheel_torque": _acted("wheel_torque_N_m"),
     "saturated": _acted("saturated"),  # of an ensemble: the share of time at the largest voltage
 }

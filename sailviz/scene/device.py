@@ -159,6 +159,30 @@ class SolarSail(Device):
         return self.characteristic_acceleration is None and self.lightness_number is None
 
 
+class Wheel(Section):
+    """The wheel of an electric sail as a body, its tethers bent downwind: straight ones coned by an angle, or parabolas
+    of a rise over their reach. hold : whether the voltage holds its axis; spin_period : of one turn at the start, with
+    the mass at the tip of each tether and of each tether itself."""
+
+    cone: Annotated[Angle, Field(ge=0, lt=1.4)] = 0.0
+    rise: Annotated[float, Field(ge=0, le=1)] | None = None
+    hold: bool = True
+    spin_period: Annotated[Time, POSITIVE] | None = None
+    tip_mass: Annotated[Mass, Field(ge=0)] = 0.0
+    tether_mass: Annotated[Mass, Field(ge=0)] = 0.0
+
+    @model_validator(mode="after")
+    def _spins(self) -> Self:
+        if self.rise is not None and self.cone:
+            raise wrong("cone and rise are two ways to bend a tether: give one")
+        heavy = self.tip_mass + self.tether_mass > 0
+        if (self.spin_period is not None) != heavy:
+            raise wrong(
+                "spin_period, and tip_mass or tether_mass, from which the spin has its momentum, belong together"
+            )
+        return self
+
+
 class ElectricSail(Device):
     """An electric solar wind sail. Its strength: characteristic acceleration, or hardware by (3.40)-(3.41)."""
 
@@ -172,6 +196,7 @@ class ElectricSail(Device):
     wind_potential: Annotated[Voltage, Field(ge=0)] = 1_000.0
     pitch_limit: Annotated[Angle, Field(gt=0, le=1.5707963267948968)] = 1.0471975511965976
     control: Annotated[PressureControl | DistanceControl, Field(discriminator="kind")] | None = None
+    wheel: Wheel | None = None
 
     @model_validator(mode="after")
     def _strength(self) -> Self:

@@ -9,6 +9,7 @@ from sailviz.scene.values import (
     POSITIVE,
     Acceleration,
     Angle,
+    AngularRate,
     Current,
     Force,
     ForcePerLength,
@@ -22,6 +23,7 @@ from sailviz.scene.values import (
     Speed,
     Temperature,
     Time,
+    Torque,
     Voltage,
     wrong,
 )
@@ -80,6 +82,10 @@ class Crossing(Section):
     tether_tilt: Annotated[Angle, NOT_NEGATIVE] | None = None
     dose: Annotated[Time, POSITIVE] | None = None
     film_temperature: Annotated[Temperature, POSITIVE] | None = None
+    spin_rate: Annotated[AngularRate, POSITIVE] | None = None
+    modulation: Annotated[float, POSITIVE] | None = None
+    thrust_lost: Annotated[float, POSITIVE] | None = None
+    wheel_torque: Annotated[Torque, POSITIVE] | None = None
     sense: Sense = "both"
 
     always: ClassVar[tuple[str, ...]] = ()  # said in the resolved scene where they are not given, too
@@ -158,6 +164,8 @@ _WORDS: dict[str, Callable[[float], str]] = {
     "voltage": lambda value: f"{value:.6g} V",
     "power": lambda value: f"{value:.6g} W",
     "temperature": lambda value: f"{value:.6g} K",
+    "angular_rate": lambda value: f"{value:.6g} rad/s",
+    "torque": lambda value: f"{value:.6g} N m",
 }
 
 

@@ -47,7 +47,7 @@ UNSAID = {  # by table, keys without which scenes were complete before they were
     "start": ("frame",),
     "light": ("kind", "distance", "longitude", "obliquity", "period", "direction", "mu", "radius"),
     "environment": ("gravity_of", "shadow_of", "magnetosphere", "space_weather"),
-    "device": ("edge_area", "name", "steering", "shape", "back", "roll", "ageing", "hottest"),
+    "device": ("edge_area", "name", "steering", "shape", "back", "roll", "ageing", "hottest", "wheel"),
     "expect": ("device",),
     "steering": ("in_shadow", "minimum_perigee", "margin"),
 }

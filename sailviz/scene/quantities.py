@@ -68,6 +68,10 @@ DIMENSIONS = {
     "saturated": "none",
     "dose": "time",
     "film_temperature": "temperature",
+    "spin_rate": "angular_rate",
+    "modulation": "none",
+    "thrust_lost": "none",
+    "wheel_torque": "torque",
 }
 
 ON_A_CIRCLE = ("raan", "true_anomaly", "clock")  # equal modulo a turn; longitude is not: it counts revolutions

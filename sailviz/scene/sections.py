@@ -137,6 +137,10 @@ PlotWord = Literal[
     "thrust_voltage",
     "film_temperature",
     "dose",
+    "spin_rate",
+    "modulation",
+    "thrust_lost",
+    "wheel_torque",
     "irradiance",
     "electrochromic_state",
 ]

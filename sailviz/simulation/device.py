@@ -18,7 +18,8 @@ from sailviz.environment import ionosphere
 from sailviz.propagate import dynamics, events
 from sailviz.propagate import low_orbit_callback as low_orbit
 from sailviz.propagate.film_callback import film_thrust
-from sailviz.propagate.quantity_callback import FILM_TEMPERATURE
+from sailviz.propagate.quantity_callback import FILM_TEMPERATURE, MODULATION
+from sailviz.propagate.wheel_callback import wheel_thrust
 from sailviz.propulsion import electric_sail, plasma_brake, solar_sail, thruster
 from sailviz.propulsion.solar_sail import FILMS, OPTICS, Film
 from sailviz.run.arrays import Body, Craft, CraftPart
@@ -162,7 +163,13 @@ def _electric_strength(device: ElectricSail, scene: Scene, design: Any) -> float
 def _electric_sail(device: ElectricSail, scene: Scene, design: Any) -> LoweredDevice:
     model = electric_sail.MODELS[device.model]
     numbers = electric_sail.Parameters(_electric_strength(device, scene, design), model, device.pitch_limit)
-    return LoweredDevice(dynamics.ELECTRIC_SAIL, numbers)
+    return LoweredDevice(dynamics.ELECTRIC_SAIL, numbers, None if device.wheel is None else wheel_thrust())
+
+
+def _saturated(device: ElectricSail, body: Body) -> list[Happening]:
+    if device.wheel is None or not device.wheel.hold:
+        return []
+    return [("tethers-saturated", (events.QUANTITY + MODULATION, 1.0, 1, events.RECORD))]
 
 
 def _electric_name(device: ElectricSail) -> str:
@@ -272,7 +279,12 @@ DEVICES: dict[type[Section], Device[Any]] = {  # the functions of each record ta
         strength=_film_strength,
     ),
     ElectricSail: Device[ElectricSail](
-        LABELS["electric-sail"], _electric_sail, size=_electric_size, sail=_electric_name, strength=_electric_strength
+        LABELS["electric-sail"],
+        _electric_sail,
+        size=_electric_size,
+        events=_saturated,
+        sail=_electric_name,
+        strength=_electric_strength,
     ),
     PlasmaBrake: Device[PlasmaBrake](
         LABELS["plasma-brake"],

@@ -14,10 +14,12 @@ from sailviz.propagate.quantity_callback import (
     INVERSE,
     MAGNETOPAUSE,
     OF_FILM,
+    OF_WHEEL,
     QUANTITIES,
     quantity_callback,
 )
 from sailviz.propagate.sky_quantities import sky_quantities
+from sailviz.propagate.wheel_callback import wheel_quantities
 from sailviz.propulsion.devices import PLASMA_BRAKE
 from sailviz.scene.phases import Phase, Until, end_of, until_of
 from sailviz.scene.quantities import ON_A_CIRCLE
@@ -133,6 +135,11 @@ def quantities_watched(scene: Scene, device: int, phase: Phase | None = None) ->
         stems.add(until.quantity)
     if getattr(scene.device, "hottest", None) is not None:
         stems.add("film_temperature")
+    wheel = getattr(scene.device, "wheel", None)
+    if wheel is not None and wheel.hold:
+        stems.add("modulation")
+    if any(stem in OF_WHEEL for stem in stems):
+        return wheel_quantities(all(stem in OF_WHEEL for stem in stems))
     blown = magnetosphere_of(scene) != "none"
     if any(stem in OF_FILM for stem in stems):
         return film_quantities(not blown and all(stem in OF_FILM for stem in stems), has_sky(scene))

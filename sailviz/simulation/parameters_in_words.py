@@ -12,6 +12,7 @@ from sailviz.simulation.film import film_words
 from sailviz.simulation.lowered import Place
 from sailviz.simulation.start import departure
 from sailviz.simulation.steering import steering_of
+from sailviz.simulation.wheel import wheel_words
 from sailviz.words import acceleration, duration
 
 if TYPE_CHECKING:
@@ -30,7 +31,7 @@ def parameters_in_words(scene: Scene, design: Design) -> Words:
     if pressure is not None:
         rows.append(("radiation pressure", f"{pressure * 1e6:.6g} µN/m² at 1 au"))
     rows += device_of(scene).words(scene.device)
-    rows += film_words(scene)
+    rows += film_words(scene) + wheel_words(scene)
     rows += steering_of(scene.steering).words(scene.steering, design)
     place = Place(scene, body_of(scene), epoch_of(scene))
     for part, record in parts_of(scene):

@@ -41,6 +41,7 @@ from sailviz.simulation.identity import identity_of
 from sailviz.simulation.sky import SceneSky, pushed_by_shape, sky_of, under_sky
 from sailviz.simulation.start import design_of, held_radius, initial_state
 from sailviz.simulation.steering import steering_of
+from sailviz.simulation.wheel import refuse_saturated, spins, wheel_numbers, wheel_of
 
 
 class Handover(NamedTuple):
@@ -63,7 +64,7 @@ class Plan:
     position: np.ndarray  # (3,) m
     velocity: np.ndarray  # (3,) m/s
     # number of the state: mass kg, 1 where the scene gives none, so that forces are accelerations; of a film that ages
-    # the dose, s of full sunlight at 1 au, since nothing burns beside it
+    # the dose, s of full sunlight at 1 au, of a wheel that spins how far its spin has drifted: nothing burns beside
     seventh: float
     model: dynamics.Model
     table: np.ndarray | None  # of the steering, `sailviz.steering.table`
@@ -89,7 +90,7 @@ class Plan:
 
     def masses(self, states: np.ndarray) -> np.ndarray:
         """Mass (n,) kg in states (7, n): 1 where the scene gives none."""
-        if dose_at_start(self.scene) is None:
+        if dose_at_start(self.scene) is None and not spins(self.scene):
             found: np.ndarray = states[6]
             return found
         return np.full(states.shape[1], self.scene.device.mass or 1.0)
@@ -117,9 +118,9 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
     device, steered, overhead = pushed_by_shape(*under_sky(sky, device, steered))
     device, overhead = by_its_force(scene, device, overhead)
     addresses, keep = _own_functions(steering=steering, force=force)
-    if addresses and ages(scene):
-        words = "a function of one's own gets the mass, which a flight of a film that ages does not carry."
-        raise SceneError([Fault("device.ageing", words)], scene.source)
+    if addresses and (ages(scene) or wheel_of(scene) is not None):
+        words = "a function of one's own gets the mass, which a film that ages or a wheel as a body does not carry."
+        raise SceneError([Fault("device.ageing" if ages(scene) else "device.wheel", words)], scene.source)
     if steering is not None:
         steered = LoweredSteering(attitude.USER)
     when, times_beside = schedules(scene, steered.table)
@@ -146,6 +147,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         table=steered.table,
         burns=any(one.burns for one in beside),
         quantity=quantities_watched(scene, device.kind, phase),
+        wheel=wheel_numbers(scene, strength or 0.0),
         film=film_numbers(scene, strength or 0.0, 1.0 if phase is None else phase.state_of(scene.device).level),
         **addresses,
         **merged(
@@ -163,6 +165,8 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         return _flight(dynamics.model(body.mu, **parts), position, velocity, when.breaks, on, times)
 
     model = dynamics.model(body.mu, **parts, **_controlled(scene, when, nominal))
+    if taken is None:
+        refuse_saturated(scene, model, np.array([*position, *velocity, _seventh(scene)]))
     return Plan(
         scene,
         body,
@@ -191,7 +195,9 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
 def _seventh(scene: Scene) -> float:
     """The last number of the state at the start of a flight."""
     dose = dose_at_start(scene)
-    return scene.device.mass or 1.0 if dose is None else dose
+    if dose is None:
+        return 0.0 if spins(scene) else scene.device.mass or 1.0
+    return dose
 
 
 def _own_functions(**functions: object) -> tuple[dict[str, int], tuple[object, ...]]:
@@ -233,6 +239,8 @@ def _integrator(
         return Choice(DOP853, "the force of a shape, read from a table, has kinks")
     if ages(scene):
         return Choice(DOP853, "it carries the dose of a film that ages along with the state")
+    if spins(scene):
+        return Choice(DOP853, "it carries the drift of the wheel's spin along with the state")
     found = choose(model, position, velocity, duration, breaks, run.integrator, run.tolerance, beside)
     if not found.possible:
         raise SceneError([Fault("propagation.integrator", f"{found.reason}.")], scene.source)

@@ -24,6 +24,7 @@ from sailviz.simulation.film import film_columns
 from sailviz.simulation.integration import INTEGRATORS
 from sailviz.simulation.no_progress import too_many, too_short, too_slow
 from sailviz.simulation.plan import Plan
+from sailviz.simulation.wheel import spins, wheel_columns
 
 FAILURES: dict[int, Callable[[Plan, Any, Patience], str]] = {
     stepping.UNDERFLOW: lambda p, state, patience: too_short(p, state),
@@ -70,8 +71,8 @@ def first_end(off_time: float, state: Any, events: list[Event]) -> float:
 
 def with_known_mass(p: Plan, events: list[Event]) -> list[Event]:
     """Events whose state says no mass where the scene gives none: 1 kg flew, so that forces are accelerations; and the
-    mass where the flight carries a dose in its place."""
-    if p.mass_known and not ages(p.scene):
+    mass where the flight carries a dose or a drift in its place."""
+    if p.mass_known and not (ages(p.scene) or spins(p.scene)):
         return events
     mass = p.scene.device.mass or np.nan
     return [replace(event, state=np.append(event.state[:6], mass)) for event in events]
@@ -174,6 +175,7 @@ def observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, fi
     environment |= {name: values[interval] for name, values in p.schedule.histories.items()}
     if p.schedule.law is not None:
         environment["thrust_voltage_V"] = voltages(p.model)[interval]
+    environment |= wheel_columns(p.scene, p.model, time, states, factor)
     environment |= columns | torques_of_light(p, time, states, factor * throttle, body)
     return Run(
         setting,

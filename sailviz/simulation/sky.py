@@ -225,11 +225,11 @@ def under_sky(
 def pushed_by_shape(
     device: LoweredDevice, steered: LoweredSteering, keywords: dict[str, Any]
 ) -> tuple[LoweredDevice, LoweredSteering, dict[str, Any]]:
-    """A sail whose force a callback of its shape knows, under a sky or without one; every other device as it is."""
-    if device.callback is None or device.kind != SOLAR_SAIL:
+    """A sail whose force a callback of its own knows, under a sky or without one; every other device as it is."""
+    if device.callback is None or device.kind not in (SOLAR_SAIL, ELECTRIC_SAIL):
         return device, steered, keywords
     parts = dict(keywords.get("sky", {}))
-    parts["pushed"] = parts.get("pushed", Pushed())._replace(device=SOLAR_SAIL)
+    parts["pushed"] = parts.get("pushed", Pushed())._replace(device=device.kind)
     return device._replace(kind=CALLED), steered, keywords | {"sky": parts}
 
 

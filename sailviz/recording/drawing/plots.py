@@ -52,8 +52,10 @@ class Plot:
 
 UNITS = {  # ending of a name -> factor and unit on the plot; the longest that fits counts
     "_rad": (180 / np.pi, "deg"),
+    "_rad_s": (30 / np.pi, "rpm"),
     "_deg": (1.0, "deg"),
     "_N_m": (1e9, "nN"),
+    "_torque_N_m": (1.0, "N m"),
     "_N": (1e3, "mN"),
     "_Pa": (1e9, "nPa"),
     "_V": (1.0, "V"),
@@ -90,6 +92,9 @@ WORDS = {  # columns of the environment whose title is not their name
     "irradiance_W_m2": "Sunshine at 1 au",
     "electrochromic_state": "Mirror share of the film's edge",
     "altitude_over_ellipsoid_m": "Height over the ellipsoid",
+    "modulation": "Swing of the voltage about its mean",
+    "thrust_lost": "Thrust that the swing costs",
+    "wheel_torque_N_m": "Torque of the wind on the wheel",
     "switching_function": "Switching function: pushes where positive",
 }
 COLOR_OF = (  # part of a column's name -> the quantity whose colour it has

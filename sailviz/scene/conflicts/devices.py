@@ -58,6 +58,8 @@ def _film_first_order(device: SolarSail) -> list[str]:
 
 
 def _electric_design(device: ElectricSail) -> Faults:
+    if device.wheel is not None:
+        return [("device.wheel", "orbits are designed for a wheel that is flat")]
     return [] if device.model == "final" else [("device.model", 'orbits are designed with the "final" model')]
 
 
@@ -71,6 +73,8 @@ def _electric_ensemble(device: ElectricSail) -> list[str]:
 
 
 def _electric_first_order(device: ElectricSail) -> list[str]:
+    if device.wheel is not None:
+        return ["the first-order solution knows electric sails that are flat: device.wheel"]
     return [] if device.model == "final" else ['the first-order solution needs the electric sail\'s "final" model']
 
 

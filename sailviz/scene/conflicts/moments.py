@@ -32,6 +32,7 @@ COME_WITH_DEVICES = {
     "wind on",
     "wind off",
     "too-hot",
+    "tethers-saturated",
 }  # events that nobody asks for
 OVER_THE_SURFACE = ("altitude", "perigee_altitude", "apogee_altitude", "mean_altitude")
 OF_A_DEVICE = ("pitch", "cone", "clock", "thrust_acceleration", "thrust_factor")

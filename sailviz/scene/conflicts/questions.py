@@ -11,6 +11,7 @@ from sailviz.scene.conflicts.ensembles import ensembles
 from sailviz.scene.conflicts.films import film_of_the_sail
 from sailviz.scene.conflicts.phases import asked_of_each, phases
 from sailviz.scene.conflicts.sky import under_its_sky
+from sailviz.scene.conflicts.wheels import wheel_of_the_sail
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
@@ -37,6 +38,7 @@ QUESTIONS = (
     craft.brightness,
     craft.sail_with_a_shape,
     film_of_the_sail,
+    wheel_of_the_sail,
     moments.epoch,
     low_orbit.known_of_the_earth,
     low_orbit.tether,

@@ -480,6 +480,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "primer": scene("transfers/ideal-law-real-film", propagation__outputs=41),
     "thruster": scene("spirals/radial-escape", propagation__outputs=61),
     "orbits": scene("transfers/earth-mercury-orbits", propagation__outputs=121),
+    "spinning wheel": scene("body/e-sail-spin", propagation__outputs=41),
     "ageing": scene("body/ageing-mercury", propagation__outputs=41),
     "phases": scene("transfers/phased-solar-polar", propagation__outputs=181, phase__2__steering__pitch_deg=80),
     "brake": scene("deorbit/gravity-gradient", propagation__duration_d=0.45, propagation__output_interval_min=7),

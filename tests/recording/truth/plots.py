@@ -29,6 +29,8 @@ UNITS = {  # SI to what a title says
     "kV": 1e-3,
     "%": 100.0,
     "yr": 1.0,
+    "N m": 1.0,
+    "rpm": 30 / np.pi,
     "% of the distance": 100.0,
     **{same: 1.0 for same in ("V", "W", "W/m²", "K", "eV", "s", "u", "sfu")},
 }

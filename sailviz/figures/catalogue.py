@@ -40,6 +40,14 @@ CATALOGUE = {
         "sails",
         "thrust_loci",
     ),
+    "ageing": Entry(
+        "A film that ages: its push over the pitch angle, and how warm it gets",
+        f"{OURS}; JPL-2015, factor 0.2, half dose half a year: assumed, not measured",
+        (12, 5.6),
+        (1, 2),
+        "sails",
+        "ageing_and_heat",
+    ),
     "thesis-4.2": Entry(
         "Displaced orbits that keep the Earth's angular rate: cone angle and characteristic acceleration",
         "Ours: the thesis does not state the angular rate of its figure 4.2; electric sail, after (4.4)-(4.5)",

@@ -1,4 +1,4 @@
-"""Figures of chapter 3: how the sails push."""
+"""Figures of chapter 3: how the sails push, and what age and heat do to a film."""
 
 from __future__ import annotations
 
@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from sailviz.constants import AU
 from sailviz.propulsion import electric_sail
+from sailviz.propulsion.film_ageing import aged_film, temperature
 from sailviz.propulsion.solar_sail import FILMS
 
 if TYPE_CHECKING:
@@ -87,3 +89,45 @@ def thrust_loci(pen: Pen, axes: Axes) -> None:
     )
     axes.set_aspect(0.45)
     axes.legend(loc="upper right", borderaxespad=1.2)
+
+
+DOSES = (0.5, 1.0, np.inf)  # yr of full sunlight at 1 au
+FACTOR, LIMIT = 0.2, (520.0, 570.0)  # of ageing; K, of polyimide: both assumed
+
+
+def ageing_and_heat(pen: Pen, left: Axes, right: Axes) -> None:
+    """Ours: push over the pitch angle of a film that ages, and how warm it gets over the distance."""
+    s = pen.style
+    pitch = np.linspace(0, np.pi / 2, 361)
+    distance = np.geomspace(0.08, 1.2, 400)
+    whole = aged_film("jpl-2015", 0.0, FACTOR).total
+    for dose, color, word in zip(
+        (0.0, *DOSES),
+        (pen.device("real film"), *s.series[1:]),
+        ("fresh", "half a year of full sunlight", "a year", "in the end"),
+        strict=False,
+    ):
+        film = aged_film("jpl-2015", dose, FACTOR)
+        k_r, k_t = film.components(pitch)
+        share = film.total / whole
+        left.plot(np.degrees(pitch), share * k_r, color=color, label=word, zorder=4)
+        left.plot(np.degrees(pitch), share * k_t, color=color, linestyle=(0, (4, 2.5)), zorder=4)
+        kelvin = temperature(distance * AU, 0.0, "jpl-2015", dose, FACTOR)
+        right.plot(distance, kelvin, color=color, label=word, zorder=4)
+    pen.label(left, 62, 0.47, "along the sunlight", s.quiet)
+    pen.label(left, 38, 0.20, "across it", s.quiet)
+    left.set(
+        xlabel="pitch angle α [°]",
+        ylabel="push over that of the fresh film facing the Sun",
+        xlim=(0, 90),
+        ylim=(0, 1.03),
+    )
+    left.legend(loc="upper right", borderaxespad=1.2)
+    right.axhspan(*LIMIT, color=s.series[1], alpha=0.12, zorder=1)
+    pen.label(right, 0.75, 545, "polyimide bears about so much", s.quiet)
+    right.set(
+        xlabel="distance from the Sun [au]",
+        ylabel="temperature of the film, facing the Sun [K]",
+        xlim=(0.08, 1.2),
+        ylim=(200, 1400),
+    )

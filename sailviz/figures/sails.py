@@ -103,7 +103,7 @@ def ageing_and_heat(pen: Pen, left: Axes, right: Axes) -> None:
     whole = aged_film("jpl-2015", 0.0, FACTOR).total
     for dose, color, word in zip(
         (0.0, *DOSES),
-        (pen.device("real film"), *s.series[1:]),
+        s.series,
         ("fresh", "half a year of full sunlight", "a year", "in the end"),
         strict=False,
     ):
@@ -124,7 +124,7 @@ def ageing_and_heat(pen: Pen, left: Axes, right: Axes) -> None:
     )
     left.legend(loc="upper right", borderaxespad=1.2)
     right.axhspan(*LIMIT, color=s.series[1], alpha=0.12, zorder=1)
-    pen.label(right, 0.75, 545, "polyimide bears about so much", s.quiet)
+    pen.label(right, 0.75, 545, "polyimide: 520 to 570 K, about", s.quiet)
     right.set(
         xlabel="distance from the Sun [au]",
         ylabel="temperature of the film, facing the Sun [K]",

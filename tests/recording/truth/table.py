@@ -325,6 +325,7 @@ TABLE = (*SYSTEM, *EARTH, *LOW, *CRAFTS, *CLOSE_UP, *ENSEMBLES, *TOGETHER, *BESI
 NUMBERS = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/approximation", "/ensemble", "/events")
 NUMBERS = (
     *NUMBERS,
+    "/film",
     "/phases",
     "/scene",
     "/flight",

@@ -18,6 +18,7 @@ from sailviz.compiled.machine_code import CannotLoadError, MachineCode
 from sailviz.compiled.waiting import compiling
 
 _PLACE = ctypes.c_void_p
+_ANSWER = ctypes.c_int64 * 2  # the result, and where an error would be described
 _STATUS = ctypes.CFUNCTYPE(ctypes.c_int, _PLACE, _PLACE, _PLACE)  # where the result goes, where an error, the arguments
 _REAL, _WHOLE = struct.Struct("d"), struct.Struct("q")
 MISFIT = -1  # result of an entry whose arguments do not fit
@@ -113,7 +114,7 @@ class Entry:
         for i in self._integers:
             (given[i],) = _REAL.unpack(_WHOLE.pack(given[i]))  # as a float of the same bits
         handed = tuple(given)
-        answer = (ctypes.c_int64 * 2)()  # the result, and where an error would be described
+        answer = _ANSWER()
         place = ctypes.addressof(answer)
         if native(place, place + 8, id(handed)):
             raise RuntimeError(f"{self.name} failed")

@@ -17,6 +17,7 @@ import numpy as np
 from sailviz.compiled import entry, inlined
 from sailviz.propagate.collocation_forces import fits_lanes, is_table, prepare
 from sailviz.propagate.collocation_memory import (
+    BEFORE,
     CLOSEST,
     HELD,
     JUMPED,
@@ -30,8 +31,10 @@ from sailviz.propagate.collocation_memory import (
     SINCE,
     SPAN,
     aligned_stack,
+    load,
     node,
     store,
+    total,
 )
 from sailviz.propagate.collocation_steps import (
     by_powers,
@@ -85,13 +88,14 @@ from sailviz.propulsion.devices import CALLED, NO_DEVICE, THRUSTER
 
 MOST_SAMPLES = 16  # of a step, when events are looked for
 SAMPLES_A_RADIAN = 10.0  # of a circular orbit at the distance of the start of the step
-SAFETY, SHRINK_MOST, GROW_MOST, BEARABLE = 0.95, 0.4, 2.0, 1.5  # of the step-size controller
+SAFETY, SHRINK_MOST, GROW_MOST, BEARABLE = 0.91, 0.4, 2.0, 1.5  # of the step-size controller
 LONG = 200.0  # rad of the whole run, at the rate of its start, beyond which what rounding takes is kept
 ROUND, MANY = 0.15, 1000.0  # eccentricity below, rad beyond which the steps of a run are of one length
 COARSEST, STEADY = 5e-9, 0.03  # of their dense errors: see bounds
 AIM, CALM = 0.7, 0.3  # error over what is bearable that a new length is to have; below which a length is too short
+PIECES = 4  # of a step, in which its distance from the centre is looked at ahead
 STEEP = 16  # the power of the length with which the error of such steps grows, as measured: at most
-WORST = 2.1  # the largest error that a step within its bounds was seen to make, over them
+WORST = 1.5  # the largest error that a step within its bounds was seen to make, over them
 ORDER = 9  # of the velocity between the nodes; the position has one more
 POLYNOMIAL = 28  # rows of Integration.work from here on: coefficients of the last step's polynomial in s
 SWEEPS = 9  # place in Integration.counter, after those that all integrators have
@@ -232,6 +236,9 @@ def attempt(s, nodes, t, limit, needs, largest_step, t_end, at_once, varies, bur
     count, clock = s.counter, s.work[CLOCK]
     wish, rejected = clock[STEP], False
     smallest = max(abs(t), abs(t_end))
+    if turn == 0.0 and nodes[LAST_ERROR] > 0.0:
+        most = max(wish, GROW_MOST * nodes[LAST_STEP])
+        wish = min(most, wish * nearer(nodes, s.work[Y], wish))
     while True:
         h = min(wish, largest_step)
         landing = t + 1.01 * h >= limit
@@ -270,6 +277,38 @@ def attempt(s, nodes, t, limit, needs, largest_step, t_end, at_once, varies, bur
     nodes[LAST_STEP], nodes[LAST_ERROR] = h, error
     count[STEPS] += 1
     return h, landing
+
+
+@inlined
+def nearer(nodes, y, h):
+    """By how much the next step can be longer than h, or must be shorter, as it comes less or more near the centre than
+    the last one did: by as much as the time scale there, as r^1.5, is longer.
+
+    It is taken to come where a Kepler orbit with the present acceleration along the radius would: with mu = r^2 times
+    that, the second derivative of r^2 is 4 energy + 2 mu / r.
+    """
+    r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
+    v2 = y[3] * y[3] + y[4] * y[4] + y[5] * y[5]
+    r, inward = np.sqrt(r2), 0.0  # the last step's polynomial at its end
+    for c in range(3):
+        inward -= y[c] * total(load(nodes, BEFORE + 8 * c))
+    mu = r * inward
+    square, slope = r2, 2.0 * (y[0] * y[3] + y[1] * y[4] + y[2] * y[5])
+    energy, bend = 2.0 * v2 - 4.0 * inward, 2.0 * (v2 - inward)
+    piece, low, reached, closest = h / PIECES, r2, 0.0, nodes[CLOSEST]
+    scale = 1.0 / (closest * closest * closest * closest * closest * closest)
+    for k in range(1, 2 * PIECES + 1):
+        slope += 0.5 * piece * bend
+        square = max(square + piece * slope, 0.01 * low)
+        bend = energy + 2.0 * mu / np.sqrt(square)
+        slope += 0.5 * piece * bend
+        low = min(low, square)
+        longer = k / PIECES
+        allowed = low * low * low * scale  # to the fourth power, of the length
+        if longer * longer * longer * longer > allowed:
+            return max(SHRINK_MOST, max(reached, np.sqrt(np.sqrt(allowed))))
+        reached = longer
+    return reached
 
 
 @inlined
@@ -321,8 +360,8 @@ def bounds(y, mu, tolerance, span, careful):
         if e2 < ROUND * ROUND:
             dense = min(min(wanted, COARSEST), STEADY * np.sqrt(wanted / turned))
             return r, dense * speed, max(agreed, 1e-17) * r, 2.0 * np.pi * span / turned
-    growth = turned * turned * near * near * near
-    dense = min(wanted, (wanted / growth) ** 0.625)
+    small = np.sqrt(wanted / (turned * turned * near * near * near))
+    dense = min(wanted, small * np.sqrt(np.sqrt(small)))  # 60 dense^1.6 each turn
     return r, dense * speed, max(agreed, 2e-17) * r, 0.0  # less would be hidden by rounding
 
 
@@ -332,11 +371,6 @@ def growth(nodes, h, error, rejected):
     if not error > 0.0:
         return GROW_MOST
     grow = SAFETY * error ** (-1.0 / ORDER)
-    before = nodes[LAST_ERROR]
-    if before > 0.0 and not rejected:
-        h_before = nodes[LAST_STEP]
-        trend = h / h_before * (before / error) ** (1.0 / ORDER)
-        grow *= min(1.3, max(0.7, trend))
     return min(GROW_MOST, max(SHRINK_MOST, grow))
 
 
@@ -344,7 +378,7 @@ def growth(nodes, h, error, rejected):
 def first_step(y, mu, tolerance):
     """A length to try first, s: what a circular orbit would get."""
     r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
-    return 11.0 * tolerance ** (1.0 / ORDER) * np.sqrt(r2 * np.sqrt(r2) / mu)
+    return 6.5 * tolerance ** (1.0 / ORDER) * np.sqrt(r2 * np.sqrt(r2) / mu)
 
 
 @inlined

@@ -299,10 +299,14 @@ def fill_rows(nodes, t_out, out, first, last):
     while last - i > 8 and i + 16 <= n:
         a, b = (load(t_out, i) - middle) * inverse, (load(t_out, i + 8) - middle) * inverse
         for j in range(out.shape[0]):
-            m = DENSE + POWERS * j + POWERS - 1
-            p, q = nodes[m - 1] + a * nodes[m], nodes[m - 1] + b * nodes[m]
-            for k in range(2, POWERS):
-                c = nodes[m - k]
+            m = DENSE + POWERS * j
+            c = nodes[m + POWERS - 2]
+            if j < 3:  # the others are of one degree less
+                p, q = c + a * nodes[m + POWERS - 1], c + b * nodes[m + POWERS - 1]
+            else:
+                p, q = spread(c), spread(c)
+            for k in range(POWERS - 3, -1, -1):
+                c = nodes[m + k]
                 p, q = c + a * p, c + b * q
             row = out[j]
             store(row, i, p)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable
+from hashlib import sha256
 from typing import Any
 
 import numpy as np
@@ -294,22 +295,50 @@ def product_with(table: Callable[[], np.ndarray], chains: int = 2) -> Any:
 
 
 def products_with(table: Callable[[], np.ndarray]) -> Any:
-    """An inlined function (array, first): the same for three rows of n numbers, one after the other, at once."""
+    """An inlined function (array, first): the same for three rows of n numbers, one after the other, at once. The table
+    is read from memory, column by column, and what is computed before and after stays apart: mixed, it would take more
+    registers than there are."""
 
     @intrinsic
     def products(typing, array, start):
         def generate(context, builder, sig, arguments):
             data = context.make_array(sig.args[0])(context, builder, arguments[0]).data
-            columns = np.asarray(table(), float).T.tolist()
+            columns = np.asarray(table(), float).T
+            kept = _in_memory(builder.module, columns)
+            _apart(builder)
             sums: list[Any] = [None] * 3
-            for j, column in enumerate(columns):
+            for j in range(len(columns)):
+                place = builder.gep(kept, [ir.Constant(WORD, 0), ir.Constant(WORD, j * COUNT)])
+                column = builder.load(builder.bitcast(place, VECTOR.as_pointer()), typ=VECTOR)
+                column.align = 64
                 for i in range(3):
                     offset = builder.add(arguments[1], ir.Constant(WORD, j + i * len(columns)))
                     value = _spread(builder, builder.load(builder.gep(data, [offset], source_etype=REAL), typ=REAL))
-                    term = builder.fmul(ir.Constant(VECTOR, column), value, flags=FREE)
+                    term = builder.fmul(column, value, flags=FREE)
                     sums[i] = term if sums[i] is None else builder.fadd(sums[i], term, flags=FREE)
+            _apart(builder)
             return context.make_tuple(builder, sig.return_type, sums)
 
         return types.UniTuple(lanes, 3)(array, types.int64), generate
 
     return products
+
+
+def _apart(builder):
+    """Nothing that reads or writes memory is moved from one side of this to the other."""
+    builder.asm(ir.FunctionType(ir.VoidType(), []), "", "~{memory}", [], True)
+
+
+def _in_memory(module, columns):
+    """A table (n, 8) as numbers in memory, beside the code: they are then read by their place in it."""
+    numbers = columns.ravel().tolist()
+    name = "sailviz.table." + sha256(columns.tobytes()).hexdigest()[:16]
+    known = module.globals.get(name)
+    if known is not None:
+        return known
+    kind = ir.ArrayType(REAL, len(numbers))
+    kept = ir.GlobalVariable(module, kind, name)
+    kept.initializer = ir.Constant(kind, numbers)
+    kept.linkage = "linkonce_odr"
+    kept.align = 64
+    return kept

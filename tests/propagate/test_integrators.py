@@ -367,8 +367,11 @@ def test_a_dropped_stone_touches_the_surface_on_time(fly, radius):
     assert flight.states.shape[1] == int(expected / 0.01) + 1
 
 
-@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-10])
-@pytest.mark.parametrize("depth", [1e-1, 1e-3, 1e-6])
+@pytest.mark.parametrize(
+    ("depth", "tolerance"),
+    # a depth of 1e-6 is less than what a flight at 1e-3 errs by
+    [(1e-1, 1e-3), (1e-3, 1e-3)] + [(depth, tolerance) for tolerance in (1e-6, 1e-10) for depth in (1e-1, 1e-3, 1e-6)],
+)
 def test_a_pass_just_below_the_surface_is_an_impact_whatever_the_step(fly, depth, tolerance):
     """From aphelion of e = 0.5 the perihelion at 0.5 lies a little below the surface, between two steps."""
     surface = 0.5 * (1 + depth)

@@ -155,7 +155,7 @@ class _Reader:
 
     def _end(self, tag: str) -> None:
         name = self._open.pop()
-        if self._leaf and self.messages:
+        if self._leaf and self.messages and not name[:1].islower():  # an empty section is none of the keywords
             self._leaf_ends(name, _plain("".join(self._words)))
         elif name == "metadata":
             self._emit("META_STOP")

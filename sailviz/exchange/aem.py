@@ -63,7 +63,7 @@ def read_aem(path: str | Path) -> AttitudeRows:
             if key in blocks[-1][0]:
                 raise RecordingError(f"{path}, line {line}: {key} is there twice")
             blocks[-1][0][key] = word
-        elif section == "data":
+        elif section == "data" and blocks:
             blocks[-1][1].append((line, text))
         else:
             raise RecordingError(f"{path}, line {line}: {text[:60]!r} stands outside of a block")

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from sailviz.errors import RecordingError
 
+LARGEST = 1e25  # in the units of messages: a place in km would lie beyond everything
 _UNIT = re.compile(r"\s*\[([^\]]*)\]\s*$")
 
 
@@ -44,6 +45,8 @@ def finite(text: str, what: str, line: int, path: str | Path) -> float:
         value = math.nan
     if not math.isfinite(value):
         raise RecordingError(f"{path}, line {line}: {what} is no finite number: {text[:40]!r}")
+    if abs(value) > LARGEST:
+        raise RecordingError(f"{path}, line {line}: {what} is out of all bounds: {text[:40]!r}")
     return value
 
 

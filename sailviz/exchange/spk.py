@@ -28,6 +28,7 @@ BODIES = {  # NAIF id -> the centres that flights here have
     10: "SUN", 1: "MERCURY", 2: "VENUS", 399: "EARTH", 301: "MOON", 4: "MARS", 5: "JUPITER", 6: "SATURN",
     199: "MERCURY", 299: "VENUS", 499: "MARS", 599: "JUPITER", 699: "SATURN", 3: "EARTH MOON BARYCENTER", 0: "SSB",
 }  # fmt: skip
+LARGEST = 1e28  # m, m/s: beyond everything
 WITH_ROWS = (5, 8, 9, 13)  # types whose arrays hold rows of states
 
 
@@ -130,8 +131,9 @@ def _segment(array: daf.Array, path: str | Path) -> Segment:
     else:  # epochs of their own, a directory, and mu or the window
         size = 7 * count + (count // DIRECTORY if kind == 5 else (count - 1) // DIRECTORY) + 2
         et = values[6 * count : 7 * count]
-    states = values[: 6 * count].reshape(count, 6) * 1e3
-    if not count or size != len(values) or not np.isfinite(states).all() or not np.all(np.diff(et) > 0):
+    with np.errstate(over="ignore", invalid="ignore"):  # damage may have left any number
+        states = values[: 6 * count].reshape(count, 6) * 1e3
+    if not count or size != len(values) or not np.all(np.abs(states) < LARGEST) or not np.all(np.diff(et) > 0):
         raise RecordingError(f"{path} is damaged: its segment {array.name or kind!r} is not one of type {kind}")
     names = {number: word for word, number in FRAMES.items()}
     return Segment(et, states[:, :3], states[:, 3:], array.name, target, centre, names.get(frame, str(frame)), kind)

@@ -28,6 +28,7 @@ NEARLY_OF_DATE = (OF_DATE, "TOD", "TEME")  # up to 19 arcsec of nutation from ea
 REQUIRED = ("OBJECT_NAME", "CENTER_NAME", "REF_FRAME", "TIME_SYSTEM")
 SAME_PLACE = 1e-6  # of the distance: two rows at one epoch closer than this are one place
 SAME_FLIGHT = 1e-2  # of the distance: overlapping blocks farther apart than this are two flights
+LARGEST = 1e25  # km, km/s: beyond everything
 LONG_GAP = 2.0  # row steps between two blocks, from where on rows are missing
 
 
@@ -214,6 +215,8 @@ def _six(numbers: list[str], text: str, line: int, path: str | Path) -> list[flo
         raise RecordingError(f"{path}, line {line}: an epoch and six numbers were due, not {text[:80]!r}") from None
     if not np.isfinite(found).all():
         raise RecordingError(f"{path}, line {line}: a state is not a finite number: {text[:80]!r}")
+    if max(map(abs, found)) > LARGEST:
+        raise RecordingError(f"{path}, line {line}: a state is out of all bounds: {text[:80]!r}")
     return found
 
 

@@ -39,6 +39,7 @@ CENTRES = {  # words of a column's name that say about which body its rows are -
     "areocentric": "mars",
 }
 LONGEST_FILE = 4_000_000_000  # bytes
+LARGEST = 1e28  # m, m/s, s: beyond everything
 AXES = "xyz"
 
 
@@ -131,7 +132,9 @@ def _table(path: Path) -> Mapping[str, np.ndarray]:
         if len(set(table.column_names)) < len(table.column_names):
             raise RecordingError(f"{path}: two columns have one name")
         return {name.strip(): table[name].to_numpy() for name in table.column_names}
-    except (pa.ArrowException, UnicodeDecodeError, ValueError) as error:
+    except (pa.ArrowException, UnicodeDecodeError, ValueError, OSError) as error:
+        if isinstance(error, OSError) and error.errno is not None:
+            raise
         words = " ".join(str(error).split())[:160]
         raise RecordingError(f"{path} is no table that can be read: {words}") from None
 
@@ -158,7 +161,13 @@ def _sorted(raw: Mapping[str, np.ndarray], path: Path) -> dict[str, np.ndarray]:
             wanted = ", ".join(list(units)[:4])
             said = f"the unit {unit}" if unit else "no unit"
             raise RecordingError(f"{path}: the column {name[:60]!r} has {said}; its name ends in one such as {wanted}")
-        numbers = _numbers(values, name, path) * units[unit]
+        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is refused as no finite number
+            numbers = _numbers(values, name, path) * units[unit]
+            wild = np.isfinite(numbers) & (np.abs(numbers) > LARGEST)
+        if wild.any():
+            raise RecordingError(
+                f"{path}: the column {name[:60]!r} holds {numbers[wild][0]:.3g} in SI, out of all bounds"
+            )
         if axis:
             parts.setdefault(what, {})[axis] = numbers
         elif numbers.shape[1:] == (() if what == "time" else (3,)):

@@ -15,6 +15,7 @@ from sailviz.cli.numbers import Number
 from sailviz.cli.outputs import file_at, file_or_folder, make_folder
 from sailviz.cli.shared import (
     collecting_failures,
+    make_tables,
     progress_bar,
     say_if_compiling,
     set_option,
@@ -226,6 +227,7 @@ def _recording_of(source: str, settings: Sequence[str], quiet: bool) -> Iterator
     from sailviz.simulation import simulate_blocks
 
     say_if_compiling(quiet)
+    make_tables(scene, quiet)
     with scratch() as folder:
         path = folder / f"{Path(source).stem}.rrd"
         with progress_bar(scene.title, quiet) as progress:

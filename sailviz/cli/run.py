@@ -15,6 +15,7 @@ from sailviz.cli.shared import (
     EXPECTATION_FAILED,
     Failures,
     collecting_failures,
+    make_tables,
     progress_bar,
     say_if_compiling,
     scenes_argument,
@@ -173,6 +174,7 @@ def _flown(
     """Fly, record and judge a scene block by block -> (recorder that is finished, rows, what ended the run)."""
     from sailviz.simulation import simulate_blocks
 
+    make_tables(scene, quiet)
     with progress_bar(scene.title, quiet) as progress:
         blocks = simulate_blocks(scene, progress=progress, time_limit=time_limit)
         block: Run | None = next(blocks)  # an infeasible scene fails here, before a recording is begun

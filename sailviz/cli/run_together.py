@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sailviz.cli.outputs import is_folder
-from sailviz.cli.shared import EXPECTATION_FAILED, Failures, progress_bar, say_if_compiling
+from sailviz.cli.shared import EXPECTATION_FAILED, Failures, make_tables, progress_bar, say_if_compiling
 from sailviz.cli.telling import rerun_command, tell_flight, verdict_facts
 from sailviz.cli.together import flight_names, refuse_names
 from sailviz.errors import RecordingError
@@ -102,6 +102,7 @@ def _flown(scene: Scene, quiet: bool, time_limit: float | None) -> tuple[Run, li
     from sailviz.simulation import simulate_blocks
 
     judge, blocks = Judge(scene), []
+    make_tables(scene, quiet)
     with progress_bar(scene.title, quiet) as progress:
         for block in simulate_blocks(scene, progress=progress, time_limit=time_limit):
             judge.add(block)

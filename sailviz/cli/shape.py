@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from sailviz.cli.shared import BAD_INPUT, progress_bar, tell
+from sailviz.shipped import shipped_scenes
 
 if TYPE_CHECKING:
     from sailviz.checks.shape_report import Report
@@ -51,8 +52,8 @@ def shape(
     """Say what light does to a shape: its area and parts, force and centre of pressure facing the Sun and at 35 deg,
     and how well tensors and table say it.
 
-    FILE is an STL, OBJ, GLB, PLY or 3MF file, or a scene (.toml) whose sail has a shape. Body axes: +z away from the
-    Sun.
+    FILE is an STL, OBJ, GLB, PLY or 3MF file; SCENE a .toml file, or the name of a shipped one, whose sail has a shape.
+    Body axes: +z away from the Sun.
     """
     from sailviz.errors import SailvizError
     from sailviz.files import check
@@ -84,7 +85,7 @@ def _report(
     """The report of a file of facets, or of a scene, which says all else itself."""
     from sailviz.checks import shape_report
 
-    if file.lower().endswith(".toml"):
+    if file.lower().endswith(".toml") or file in shipped_scenes():
         return shape_report.report_of_scene(file)
     shape = shape_report.shape_of_file(file, **materials)
     return shape_report.report(file, shape, cells, interpolation, shadow, progress)

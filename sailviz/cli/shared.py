@@ -12,11 +12,14 @@ import sys
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from sailviz.errors import PropagationError, RecordingError, SailvizError, SceneError, TimeLimitError
+
+if TYPE_CHECKING:
+    from sailviz.scene import Scene
 
 EXPECTATION_FAILED, BAD_INPUT, RUN_FAILED, UNFORESEEN, INTERRUPTED, UNREAD = 1, 2, 3, 4, 130, 141
 LONGEST_WORD, LONGEST_LINE = 300, 2000  # letters of a message; what is longer was given by accident
@@ -82,6 +85,19 @@ def progress_bar(title: str, quiet: bool) -> Iterator[Callable[[float], None] | 
         total=1.0, desc=title[:40], delay=1, leave=False, bar_format="{l_bar}{bar}| {elapsed}<{remaining}"
     ) as bar:
         yield lambda fraction: bar.update(fraction - bar.n)
+
+
+def make_tables(scene: Scene, quiet: bool) -> None:
+    """Have the tables of a sail's shape, under a bar of their own where they have to be made: it may take longer than
+    the flight. SceneError where they cannot be had."""
+    from sailviz.scene.device import has_shape
+
+    if not has_shape(scene.device):
+        return
+    from sailviz.simulation.sail_shape import sail_shape
+
+    with progress_bar("Light on the shape", quiet) as progress:
+        sail_shape(scene, progress)
 
 
 def tell(message: object) -> None:

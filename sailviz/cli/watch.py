@@ -14,6 +14,7 @@ import click
 from sailviz.cli.numbers import PORT
 from sailviz.cli.shared import (
     collecting_failures,
+    make_tables,
     progress_bar,
     said,
     say_if_compiling,
@@ -114,6 +115,7 @@ class Watch:
         path = self._viewer.folder / f"flight_{self._flights}.rrd"
         judge, rows, ended = Judge(scene), 0, ""
         try:
+            make_tables(scene, self._quiet)
             with progress_bar(scene.title, self._quiet) as bar:
 
                 def progress(done: float) -> None:

@@ -112,6 +112,7 @@ def model(
     sky_table: np.ndarray[Any, Any] | None = None,
     film: Sequence[float] = (),
     wheel: Sequence[float] = (),
+    shape_air: Sequence[float] | None = None,
     user_steering: int = 0,
     user_force: int = 0,
 ) -> Model:
@@ -124,7 +125,7 @@ def model(
     CALLED; forces add up; burns : one of them burns propellant. sky : Parameters of the sky's parts by name, `sky`,
     `magnetosphere`, `by_light`, `pushed`; sky_table of `environment.sky.packed`; film : Numbers of
     `propulsion.film_ageing`, of a film that ages or whose temperature is asked for;
-    wheel : Numbers of `propulsion.esail_wheel`, of a wheel that is a body.
+    wheel : Numbers of `propulsion.esail_wheel`, of a wheel that is a body; shape_air of `shape_air_callback.numbers`.
     """
     parameters = np.zeros(1, PARAMETERS)
     p = parameters[0]
@@ -190,6 +191,7 @@ def model(
         "control": control_table,
         "control_law": control_law,
         "sky": sky_table,
+        "shape_air": shape_air,
     }
     for place, rows in named.items():
         if rows is not None:

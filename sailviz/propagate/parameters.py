@@ -50,6 +50,7 @@ class Pushed(NamedTuple):
     drag_area: float = 0.0  # m2, drag coefficient times the area that faces the flow; 0: no drag by attitude
     edge_area: float = 0.0  # m2, the same of what a sail that stands edge-on shows
     mass: float = 0.0  # kg, at which the sail has its strength, a force over the mass; 0: its strength stays
+    blown: int = 0  # 1: the air pushes a shape, whose sides have kinks between them
 
 
 class Callbacks(NamedTuple):
@@ -79,6 +80,7 @@ class Places(NamedTuple):
     control: int = 0
     control_law: int = 0
     sky: int = 0  # places of bodies, see environment.sky
+    shape_air: int = 0  # air on a shape, see shape_air_callback
     end: int = 0  # length of the array
     address: int = 0  # of the array itself, which the Model keeps alive
 

@@ -41,6 +41,37 @@ def axes_x(rx, ry, rz, vx, vy, vz, nx, ny, nz):
     return x / size, y / size, z / size
 
 
+@called
+def rolled_axes(rx, ry, rz, vx, vy, vz, nx, ny, nz, c, s):
+    """The body's x and y axes, turned about the normal by an angle of cosine c and sine s."""
+    ex, ey, ez = axes_x(rx, ry, rz, vx, vy, vz, nx, ny, nz)
+    gx, gy, gz = ny * ez - nz * ey, nz * ex - nx * ez, nx * ey - ny * ex
+    return (
+        c * ex + s * gx,
+        c * ey + s * gy,
+        c * ez + s * gz,
+        c * gx - s * ex,
+        c * gy - s * ey,
+        c * gz - s * ez,
+    )
+
+
+@called
+def pushed_along(ux, uy, uz, ex, ey, ez, gx, gy, gz, nx, ny, nz, own, at):
+    """(force m2 in space, torque m3 in body axes) over 2 P of a flow along u on a body with the axes e, g, n. own : an
+    array in which the table begins at place `at`."""
+    bx, by, bz = ux * ex + uy * ey + uz * ez, ux * gx + uy * gy + uz * gz, ux * nx + uy * ny + uz * nz
+    fx, fy, fz, tx, ty, tz = shaped_sail.push(bx, by, bz, own, at)
+    return (
+        fx * ex + fy * gx + fz * nx,
+        fx * ey + fy * gy + fz * ny,
+        fx * ez + fy * gz + fz * nz,
+        tx,
+        ty,
+        tz,
+    )
+
+
 def _thrust(time, state, parameters, own, number, out):
     """Acceleration, m/s2, of the light."""
     p = record_at(parameters, PARAMETERS)
@@ -55,23 +86,10 @@ def _thrust(time, state, parameters, own, number, out):
         ux, uy, uz, near = sky.from_light(x, yy, z, p.places.sky, tables)
         share = number * sunlit_share(x, yy, z, p, tables)
     if share > 0.0 and nx * nx + ny * ny + nz * nz > 0.0:
-        ex, ey, ez = axes_x(x, yy, z, y[3], y[4], y[5], nx, ny, nz)
-        gx, gy, gz = ny * ez - nz * ey, nz * ex - nx * ez, nx * ey - ny * ex
-        c, s = mine[COS], mine[SIN]
-        ex, ey, ez, gx, gy, gz = (
-            c * ex + s * gx,
-            c * ey + s * gy,
-            c * ez + s * gz,
-            c * gx - s * ex,
-            c * gy - s * ey,
-            c * gz - s * ez,
-        )
-        bx, by, bz = ux * ex + uy * ey + uz * ez, ux * gx + uy * gy + uz * gz, ux * nx + uy * ny + uz * nz
-        fx, fy, fz, _, _, _ = shaped_sail.push(bx, by, bz, mine, TABLE)
+        ex, ey, ez, gx, gy, gz = rolled_axes(x, yy, z, y[3], y[4], y[5], nx, ny, nz, mine[COS], mine[SIN])
+        fx, fy, fz, _, _, _ = pushed_along(ux, uy, uz, ex, ey, ez, gx, gy, gz, nx, ny, nz, mine, TABLE)
         k = share * mine[PUSH] * near * near / m
-        a[0] = k * (fx * ex + fy * gx + fz * nx)
-        a[1] = k * (fx * ey + fy * gy + fz * ny)
-        a[2] = k * (fx * ez + fy * gz + fz * nz)
+        a[0], a[1], a[2] = k * fx, k * fy, k * fz
 
 
 def shape_thrust(push: float, under_sky: bool, roll: float, table: Sequence[float]) -> Callback:

@@ -235,6 +235,7 @@ def scene(
         "body_radius_m": float(setting.body.radius),
         "craft_kind": craft.kind,
         **{key: float(size) for key, size in sizes.items() if size is not None},
+        **({"craft_shape": craft.shape} if craft.shape else {}),
         "rows": int(rows),
         "complete": bool(complete),
         "ended": ended,

@@ -114,7 +114,9 @@ def craft_of(facts: Mapping[str, np.ndarray]) -> Craft:
     kind = str(facts["craft_kind"][0])
     sizes = {name: facts.get(f"craft_{name}") for name in ("side_m", "tethers", "tether_length_m")}
     side, tethers, length = (None if size is None else float(size[0]) for size in sizes.values())
-    return Craft(kind, LABELS.get(kind, "Spacecraft"), side, None if tethers is None else int(tethers), length)
+    shape = str(facts["craft_shape"][0]) if "craft_shape" in facts else ""
+    count = None if tethers is None else int(tethers)
+    return Craft(kind, LABELS.get(kind, "Spacecraft"), side, count, length, shape=shape)
 
 
 def drawn_run_of(recording: Recording) -> Run:

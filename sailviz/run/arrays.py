@@ -5,6 +5,7 @@ A Run is whole or a block of consecutive rows of one; `join` puts blocks togethe
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
@@ -43,6 +44,10 @@ class Craft:
     tether_length: float | None = None
     spin: str = ""  # of a tether that spins: the plane in which, "along-track" or "across-track"
     parts: tuple[CraftPart, ...] = field(default=(), compare=False, repr=False)  # of a sail with a shape, its mesh
+    # of such a sail, what tells the pressure of light on its facets, part after part: directions of the light (n, 3) in
+    # body axes -> (n, k) over twice the radiation pressure, 0 in the shade
+    pressure: Callable[[np.ndarray], np.ndarray] | None = field(default=None, compare=False, repr=False)
+    shape: str = ""  # of such a one: kind, hashes of facets, file and table, facets, area m2, as JSON
 
 
 @dataclass(frozen=True)

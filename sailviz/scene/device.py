@@ -268,6 +268,16 @@ def by_force(device: Device) -> bool:
     return isinstance(device, ElectricSail) and device.characteristic_acceleration is None
 
 
+def has_shape(device: Device) -> bool:
+    """Whether the facets of a shape make a sail's force."""
+    return isinstance(device, SolarSail) and device.shape is not None
+
+
+def air_on_facets(device: Device) -> bool:
+    """Whether the air of a scene pushes the facets of a sail's shape."""
+    return isinstance(device, SolarSail) and device.shape is not None and device.shape.air is not None
+
+
 def control_of(device: Device) -> PressureControl | DistanceControl | ElectrochromicControl | None:
     """How a device answers to wind or sunlight that varies; None where it does not."""
     return device.control if isinstance(device, (SolarSail, ElectricSail)) else None

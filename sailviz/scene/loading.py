@@ -48,6 +48,7 @@ UNSAID = {  # by table, keys without which scenes were complete before they were
     "light": ("kind", "distance", "longitude", "obliquity", "period", "direction", "mu", "radius"),
     "environment": ("gravity_of", "shadow_of", "magnetosphere", "space_weather"),
     "device": ("edge_area", "name", "steering", "shape", "back", "roll", "ageing", "hottest", "wheel"),
+    "device.shape": ("air",),
     "expect": ("device",),
     "steering": ("in_shadow", "minimum_perigee", "margin"),
 }
@@ -142,8 +143,9 @@ class Scene(Section):
         not said: what scenes were before they could be said, they still are."""
         values = self.model_dump(mode="json")
         beside = [device.model_dump(mode="json") for device in self._beside]
-        tables = [("", values), *((name, values[name] or {}) for name in UNSAID if name and name != "expect")]
+        tables = [("", values), *((name, values[name] or {}) for name in UNSAID if name in values and name != "expect")]
         tables += [("device", device) for device in beside]
+        tables += [("device.shape", device.get("shape") or {}) for device in (values["device"], *beside)]
         tables += [("steering", device["steering"] or {}) for device in beside]
         tables += [("expect", expected) for expected in values["expect"]]
         for name, table in tables:

@@ -19,13 +19,26 @@ class Bus(Section):
     film: Annotated[str, Field(min_length=1)] = "black"
 
 
+class Air(Section):
+    """How the scene's atmosphere pushes the facets: Maxwell's law of free molecular flow, or its limit of a gas without
+    heat. speed_ratio : of the flow over the most probable speed of the gas; accommodation : of momentum;
+    wall_temperature_ratio : of wall and gas. By default oxygen atoms of 1000 K, a wall of 300 K."""
+
+    law: Literal["free-molecular", "hyperthermal"] = "free-molecular"
+    speed_ratio: Annotated[float, POSITIVE] = 7.5
+    normal_accommodation: Annotated[float, Field(ge=0, le=1)] = 1.0
+    tangential_accommodation: Annotated[float, Field(ge=0, le=1)] = 1.0
+    wall_temperature_ratio: Annotated[float, POSITIVE] = 0.3
+
+
 class Shape(Section):
-    """What every shape may say: whether parts shade each other, and how its table is made and read."""
+    """What every shape may say: whether parts shade each other, how its table is made and read, how air pushes it."""
 
     shadow: bool = True
     cells: Annotated[int, Field(ge=2, le=256, multiple_of=2)] = 32
     interpolation: Literal["bilinear", "bicubic"] = "bilinear"
     bus: Bus | None = None
+    air: Air | None = None
 
 
 class SquareShape(Shape):

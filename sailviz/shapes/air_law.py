@@ -30,6 +30,11 @@ class Air:
     tangential_accommodation: float = 1.0
     temperature_ratio: float = 1.0
 
+    @property
+    def all_round(self) -> bool:
+        """Warm gas also reaches what is turned away from the flow."""
+        return True
+
     def pressure_and_shear(self, cosine: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(p, tau) over rho V^2 / 2 on one side of a facet; cosine < 0: the lee side."""
         from scipy.special import erf

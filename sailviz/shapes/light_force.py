@@ -20,7 +20,10 @@ from sailviz.shapes.facets import Elements, Part, Shape
 
 
 class Law(Protocol):
-    """How a facet is pushed."""
+    """How a facet is pushed. all_round : whether also where it is turned away from the flow."""
+
+    @property
+    def all_round(self) -> bool: ...
 
     def tractions(self, d: np.ndarray, front: np.ndarray, back: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(along the flow, along the front normal), (n, k) each, per area and 2 P, of facets whose front normals have
@@ -32,6 +35,8 @@ class Law(Protocol):
 @dataclass(frozen=True)
 class Light:
     """Sunlight; and air in the hyperthermal limit, whose law is the same."""
+
+    all_round = False
 
     def tractions(self, d: np.ndarray, front: np.ndarray, back: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """As `Law` says it."""

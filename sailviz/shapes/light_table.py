@@ -109,7 +109,7 @@ def exact(
     """(force (n, 3) m2, torque (n, 3) m3) over 2 P of the facets, shaded where `shadows` is given. u (n, 3)."""
     force, torque = np.empty((len(u), 3)), np.empty((len(u), 3))
     for batch in batches(len(u), len(shape.elements)):
-        visible = None if shadows is None else shadows.visible(u[batch])
+        visible = None if shadows is None else shadows.visible(u[batch], float(law.all_round))
         force[batch], torque[batch] = force_and_torque(shape, u[batch], visible, law)
         if progress is not None:
             progress(min(1.0, batch.stop / len(u)))

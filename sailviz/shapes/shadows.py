@@ -96,14 +96,15 @@ class Shadows:
             np.einsum("sv,kvi->ski", weights, shape.mesh.triangles) if samples > 1 else shape.elements.centre[None]
         )
 
-    def visible(self, u: np.ndarray) -> np.ndarray:
-        """Share of each facet that light from one direction reaches, (n, k), 0 also where it would meet the back of a
-        closed body. u (n, 3)."""
+    def visible(self, u: np.ndarray, turned_away: float = 0.0) -> np.ndarray:
+        """Share of each facet that light from one direction reaches, (n, k). turned_away : what is said of a facet that
+        stands edge-on, or would be met on the back of a closed body. u (n, 3)."""
         d = u @ self._elements.normal.T
-        found = np.where((np.abs(d) > EDGE_ON) & ((d < 0) | self._meets_back), 1.0, 0.0)
+        met = (np.abs(d) > EDGE_ON) & ((d < 0) | self._meets_back)
+        found = np.where(met, 1.0, turned_away)
         if self._caster is None:
             return np.asarray(found)
-        which, facet = np.nonzero(found)
+        which, facet = np.nonzero(met)
         lift = self._elements.normal[facet] * (-np.sign(d[which, facet]) * self._off)[:, None]
         hits = np.zeros(len(facet))
         for points in self._points:

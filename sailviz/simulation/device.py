@@ -6,6 +6,7 @@ recording/drawing/devices.py.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -25,7 +26,7 @@ from sailviz.propulsion.solar_sail import FILMS, OPTICS, Film
 from sailviz.run.arrays import Body, Craft, CraftPart
 from sailviz.run.devices import LABELS
 from sailviz.scene.device import Device as DeviceSection
-from sailviz.scene.device import ElectricSail, NoDevice, PlasmaBrake, SolarSail, Thruster
+from sailviz.scene.device import ElectricSail, NoDevice, PlasmaBrake, SolarSail, Thruster, has_shape
 from sailviz.scene.sky import has_sky, light_mu
 from sailviz.scene.values import Section
 from sailviz.simulation.bodies import epoch_of
@@ -310,6 +311,15 @@ def strength_or_none(scene: Scene, design: Any) -> float | None:
     return None if device_of(scene).sail is None else sail_strength(scene, design)
 
 
+def shape_facts(scene: Scene) -> dict[str, Any] | None:
+    """What a recording says of the shape of the scene's sail; None where it has none."""
+    if not has_shape(scene.device):
+        return None
+    from sailviz.simulation.sail_shape import sail_shape
+
+    return sail_shape(scene).facts
+
+
 def craft(scene: Scene) -> Craft:
     """What flies, for its mesh and its labels."""
     record = device_of(scene)
@@ -320,6 +330,8 @@ def craft(scene: Scene) -> Craft:
         return found
     from sailviz.simulation.sail_shape import sail_shape
 
-    shape = sail_shape(scene).shape
+    found_shape = sail_shape(scene)
+    shape = found_shape.shape
     parts = (CraftPart(part.name, part.mesh.vertices, part.mesh.faces, part.is_film) for part in shape.parts)
-    return replace(found, side=shape.size, parts=tuple(parts))
+    told = json.dumps(found_shape.facts, sort_keys=True)
+    return replace(found, side=shape.size, parts=tuple(parts), shape=told, pressure=found_shape.pressures)

@@ -28,7 +28,7 @@ from sailviz.scene.environment import CyclicIrradiance, GammaWind, ReplayedWind,
 from sailviz.scene.sections import Chaos, Ensemble, ManyFlights
 from sailviz.scene.steering import FrameSteering, PlainSteering, SmoothedSteering, TableSteering
 from sailviz.scene.values import Section
-from sailviz.simulation.device import film_of, sail_strength
+from sailviz.simulation.device import film_of, radiation_pressure, sail_strength
 from sailviz.simulation.plan import Plan
 from sailviz.simulation.start import held_radius
 from sailviz.simulation.thrust_history import (
@@ -85,6 +85,12 @@ def _craft(p: Plan) -> Options:
     }
     if isinstance(scene.device, ElectricSail):
         options["model"] = scene.device.model
+    if isinstance(scene.device, SolarSail) and scene.device.shape is not None:
+        from sailviz.simulation.sail_shape import acceleration_in_orbit
+
+        pressure = radiation_pressure(scene)
+        assert pressure is not None  # as for every sail that does not say its strength
+        options["device"] = acceleration_in_orbit(scene, pressure)
     steering = scene.steering
     if steering is not None:
         options |= STEERINGS[type(steering)](p, steering)

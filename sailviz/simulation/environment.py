@@ -119,8 +119,9 @@ def _density_of_table(part: IonosphereTable, named: Parameters, place: Array, an
 # ---------------------------------------------------------------- air
 def _drag_area(scene: Scene) -> float:
     area = scene.device.drag_area
-    assert area is not None  # or the scene would not have been accepted
-    return 0.0 if isinstance(area, str) else area * scene.device.drag_coefficient  # by attitude: the sky's callback
+    if area is None or isinstance(area, str):
+        return 0.0  # by facets or by attitude: a callback's
+    return area * scene.device.drag_coefficient
 
 
 def _exponential_air(part: ExponentialAtmosphere, place: Place) -> dict[str, Any]:

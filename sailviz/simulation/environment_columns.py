@@ -15,7 +15,7 @@ from sailviz.propagate import low_orbit_callback as low_orbit
 from sailviz.scene.device import SolarSail
 from sailviz.scene.sky import shadow_kind
 from sailviz.simulation.bodies import epoch_of
-from sailviz.simulation.device import device_of, radiation_pressure
+from sailviz.simulation.device import device_of, radiation_pressure, sail_strength
 from sailviz.simulation.environment import parts_of, watches_shadow
 from sailviz.simulation.lowered import Array, Columns, Place
 from sailviz.simulation.plan import Plan
@@ -43,6 +43,7 @@ def observe(p: Plan, time: Array, states: Array, factor: Array) -> tuple[Array, 
             acceleration = acceleration + more
     if p.sky is not None:
         columns |= sky_columns(p, time, states, normal)
+    columns |= push_along_primer(p, states, acceleration, columns)
     return normal, acceleration, throttle, columns
 
 
@@ -62,6 +63,14 @@ def sky_columns(p: Plan, time: Array, states: Array, normal: Array) -> Columns:
             columns["sunlit_fraction"] = values[sky_callback.SHARE]
     if named.magnetosphere.kind != magnetosphere.NONE:
         columns["in_solar_wind"] = values[sky_callback.WIND] > 0.5
+    if named.pushed.blown:
+        from sailviz.propagate import shape_air_callback as shape_air
+
+        blown = shape_air.observe_air(time, states, normal, p.model.parameters)
+        columns["air_density_kg_m3"], columns["air_drag_N"] = blown[shape_air.DENSITY], blown[shape_air.DRAG]
+        size = np.sum(blown[shape_air.FORCE : shape_air.FORCE + 3] ** 2, axis=0)
+        columns["air_lift_N"] = np.sqrt(np.maximum(0.0, size - blown[shape_air.DRAG] ** 2))
+        columns |= {f"air_torque_{axis}_N_m": blown[shape_air.TORQUE + i].copy() for i, axis in enumerate("xyz")}
     if named.pushed.drag_area > 0.0:
         columns["air_density_kg_m3"] = values[sky_callback.AIR_DENSITY]
         columns["air_drag_N"] = values[sky_callback.AIR_DRAG]
@@ -76,6 +85,17 @@ def axes_of_light(p: Plan, time: Array, states: Array, normal: Array) -> Array |
     values = sky_callback.observe_sky(time, states, normal, p.model.parameters)
     rows = (sky_callback.FROM_LIGHT, sky_callback.EAST, sky_callback.NORTH)
     return np.stack([values[row : row + 3].T for row in rows], axis=-1)
+
+
+def push_along_primer(p: Plan, states: Array, acceleration: Array, columns: Columns) -> Columns:
+    """What a sail with a shape, steered as the flat film would be, gives along its law's primer (n,), over its full
+    thrust where it is: beside the `switching_function`, which is what the law expects of a flat film."""
+    device, primer = p.scene.device, columns.get("primer_direction")
+    if primer is None or not isinstance(device, SolarSail) or device.shape is None:
+        return {}
+    distance = columns.get("sun_distance_m", np.linalg.norm(states[:3], axis=0))
+    full = sail_strength(p.scene, p.design) * (AU / distance) ** 2
+    return {"push_along_primer": np.sum(acceleration * primer, axis=1) / full}
 
 
 def rolled(p: Plan, body: Array) -> Array:

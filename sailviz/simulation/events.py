@@ -21,6 +21,7 @@ from sailviz.propagate.quantity_callback import (
 from sailviz.propagate.sky_quantities import sky_quantities
 from sailviz.propagate.wheel_callback import wheel_quantities
 from sailviz.propulsion.devices import PLASMA_BRAKE
+from sailviz.scene.device import air_on_facets
 from sailviz.scene.phases import Phase, Until, end_of, until_of
 from sailviz.scene.quantities import ON_A_CIRCLE
 from sailviz.scene.sky import has_sky, magnetosphere_of
@@ -143,6 +144,10 @@ def quantities_watched(scene: Scene, device: int, phase: Phase | None = None) ->
     blown = magnetosphere_of(scene) != "none"
     if any(stem in OF_FILM for stem in stems):
         return film_quantities(not blown and all(stem in OF_FILM for stem in stems), has_sky(scene))
+    if air_on_facets(scene.device) and "air_drag" in stems:
+        from sailviz.propagate.shape_air_callback import shape_quantities
+
+        return shape_quantities()
     if has_sky(scene) and (stems or blown):
         return sky_quantities()
     return quantity_callback(stems, device == PLASMA_BRAKE) if stems else None

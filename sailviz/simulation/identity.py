@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,12 +12,15 @@ if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
 
-def identity_of(scene: Scene, **functions: Any) -> str:
-    """Hash of the scene and of the user's functions, each under the name of its part."""
+def identity_of(scene: Scene, *, shape: dict[str, Any] | None = None, **functions: Any) -> str:
+    """Hash of the scene and of the user's functions, each under the name of its part; and of a sail's shape, which a
+    file beside the scene may hold."""
     digest = hashlib.sha256(scene.identity().encode())
     for part, function in functions.items():
         if function is not None:
             digest.update(f"{part} {_written(function)}".encode())
+    if shape is not None:
+        digest.update(json.dumps(shape, sort_keys=True).encode())
     return digest.hexdigest()[:16]
 
 

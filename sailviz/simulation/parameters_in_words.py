@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sailviz.propulsion.solar_sail import FILMS
+from sailviz.scene.device import SolarSail
 from sailviz.scene.phases import Until, until_of
+from sailviz.scene.steering import PrimerSteering
 from sailviz.simulation.bodies import body_of, epoch_of
-from sailviz.simulation.device import device_of, radiation_pressure, strength_or_none
+from sailviz.simulation.device import device_of, film_of, radiation_pressure, shape_facts, strength_or_none
 from sailviz.simulation.environment import parts_of
 from sailviz.simulation.film import film_words
 from sailviz.simulation.lowered import Place
@@ -30,13 +33,38 @@ def parameters_in_words(scene: Scene, design: Design) -> Words:
     pressure = radiation_pressure(scene)
     if pressure is not None:
         rows.append(("radiation pressure", f"{pressure * 1e6:.6g} µN/m² at 1 au"))
-    rows += device_of(scene).words(scene.device)
+    rows += device_of(scene).words(scene.device) + _shape(scene)
     rows += film_words(scene) + wheel_words(scene)
     rows += steering_of(scene.steering).words(scene.steering, design)
+    rows += _as_flat_film(scene)
     place = Place(scene, body_of(scene), epoch_of(scene))
     for part, record in parts_of(scene):
         rows += record.words(part, place)
     return rows + _phases(scene) + _expectations(scene)
+
+
+def _shape(scene: Scene) -> Words:
+    """A shape's facets and table."""
+    facts = shape_facts(scene)
+    if facts is None:
+        return []
+    rays = {"none": "no shadows"}.get(facts["rays"], f"shadows by {facts['rays']}")
+    area = f"{facts['film_area_m2']:.6g} m²"
+    return [("shape", f"{facts['kind']}, {facts['facets']} facets, {area} of film, {rays}, table {facts['table'][:8]}")]
+
+
+def _as_flat_film(scene: Scene) -> Words:
+    """What a sail with a shape gives up under a law that makes the most of a flat film."""
+    device, steering = scene.device, scene.steering
+    if not isinstance(device, SolarSail) or device.shape is None or not isinstance(steering, PrimerSteering):
+        return []
+    from sailviz.simulation.sail_shape import given_up, sail_shape
+
+    film = film_of(scene) if steering.reckons_with is None else FILMS.get(steering.reckons_with)
+    if film is None:  # an electric sail, whose best pitch is of no use to a film
+        return [("law", f"reckons with {steering.reckons_with}")]
+    lost = given_up(sail_shape(scene), film)
+    return [("law", f"reckons with a flat film; of the shape's push along the primer this gives up {lost:.2g} at most")]
 
 
 def _phases(scene: Scene) -> Words:

@@ -34,11 +34,11 @@ if TYPE_CHECKING:
 from sailviz.simulation.approximations import first_orders, quasi_circular_decay
 from sailviz.simulation.beside import BesideDevice, by_its_force, devices_beside, in_phase, named_switches, schedules
 from sailviz.simulation.bodies import body_of, epoch_of
-from sailviz.simulation.device import device_of, strength_or_none
+from sailviz.simulation.device import device_of, shape_facts, strength_or_none
 from sailviz.simulation.events import latest_end, quantities_watched, watched
 from sailviz.simulation.film import dose_at_start, film_numbers
 from sailviz.simulation.identity import identity_of
-from sailviz.simulation.sky import SceneSky, pushed_by_shape, sky_of, under_sky
+from sailviz.simulation.sky import SceneSky, blown_by_air, pushed_by_shape, sky_of, under_sky
 from sailviz.simulation.start import design_of, held_radius, initial_state
 from sailviz.simulation.steering import steering_of
 from sailviz.simulation.wheel import refuse_saturated, spins, wheel_numbers, wheel_of
@@ -116,6 +116,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
     steered = steering_of(scene.steering).lower(scene.steering, flight)
     sky = sky_of(scene, body, epoch_of(scene))
     device, steered, overhead = pushed_by_shape(*under_sky(sky, device, steered))
+    device, overhead = blown_by_air(scene, device, overhead)
     device, overhead = by_its_force(scene, device, overhead)
     addresses, keep = _own_functions(steering=steering, force=force)
     if addresses and (ages(scene) or wheel_of(scene) is not None):
@@ -185,7 +186,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         sky,
         beside,
         keep,
-        identity_of(whole, steering=steering, force=force),
+        identity_of(whole, steering=steering, force=force, shape=shape_facts(whole)),
         begin,
         limit,
         taken is None or taken.in_use,

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -12,14 +14,16 @@ import numpy as np
 from sailviz import frames
 from sailviz.constants import AU
 from sailviz.errors import Fault, SailvizError, SceneError
+from sailviz.propagate import shape_air_callback
 from sailviz.propagate.callbacks import Callback
-from sailviz.propagate.shape_callback import shape_thrust
+from sailviz.propagate.shape_callback import WEAK, shape_thrust
 from sailviz.propulsion import shaped_sail
 from sailviz.propulsion.solar_sail import FILMS, Film, black_back
 from sailviz.propulsion.surfaces import back_named, film_named, side_of
 from sailviz.scene.device import SolarSail
 from sailviz.scene.named_files import folder_of
 from sailviz.scene.shape import (
+    Air,
     Bus,
     CapShape,
     DiscShape,
@@ -29,28 +33,41 @@ from sailviz.scene.shape import (
     RingShape,
     SquareShape,
 )
-from sailviz.shapes import kept_tables, membranes, shadows, structures
+from sailviz.scene.shape import Shape as ShapeSection
+from sailviz.shapes import air_law, kept_tables, membranes, shadows, structures
 from sailviz.shapes.facets import Coefficients, Part, Shape, Surface, subdivided
 from sailviz.shapes.file_checks import ShapeError
+from sailviz.shapes.light_force import LIGHT, Law, pressure
 from sailviz.shapes.light_table import LightTable
 from sailviz.shapes.own_files import read_parts, shape_of
+from sailviz.simulation.lowered import Array
+from sailviz.steering import optimal_pitch
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
+Progress = Callable[[float], None]
 FINE = 7e-4  # share of the films' area that a facet of a file may have where it may be shaded
 BLACK = Coefficients(0.5, 0.0, 0.0)
 
 
 class SailShape(NamedTuple):
-    """A shape and its table over the directions of the light."""
+    """A shape and its table over the directions of the light. facts : what a recording says of them."""
 
     shape: Shape
     table: LightTable
+    air: LightTable | None  # of the law of the air, where that pushes it
+    facts: dict[str, Any]
 
     def facing(self) -> float:
         """Force along its axis over 2 P, m2, where it faces the light."""
         return float(shaped_sail.force_and_torque([0.0, 0.0, 1.0], self.table.numbers)[0][2])
+
+    def pressures(self, u: np.ndarray) -> np.ndarray:
+        """Pressure of light (n, k) over 2 P on its facets, for directions u (n, 3) in body axes."""
+        caster = shadows.Shadows(self.shape) if self.facts["shadow"] else None
+        visible = [None] * len(u) if caster is None else caster.visible(u)
+        return np.stack([pressure(self.shape, one, seen) for one, seen in zip(u, visible, strict=True)])
 
 
 def surface_named(film: str, back: str, closed: bool) -> Surface:
@@ -76,14 +93,15 @@ def of_file(
     return subdivided(shape, FINE) if shadows.may_shade(shape) else shape
 
 
-def sail_shape(scene: Scene) -> SailShape:
-    """The shape of the scene's sail. SceneError where it cannot be had."""
+def sail_shape(scene: Scene, progress: Progress | None = None) -> SailShape:
+    """The shape of the scene's sail, found again where it was made before. progress : hears the share that is done of
+    its tables. SceneError where it cannot be had."""
     device = scene.device
     assert isinstance(device, SolarSail)
     file = folder_of(scene) / device.shape.file if isinstance(device.shape, FileShape) else None
     stamp = file.stat().st_mtime_ns if file is not None and file.is_file() else 0
     try:
-        return _built(device.model_dump_json(include={"film", "back", "shape"}), file, stamp, _Held(device))
+        return _built(device.model_dump_json(include={"film", "back", "shape"}), file, stamp, _Held(device, progress))
     except SailvizError as error:
         raise SceneError([Fault("device.shape", f"{error}.")], scene.source) from None
     except ValueError as error:
@@ -91,10 +109,10 @@ def sail_shape(scene: Scene) -> SailShape:
 
 
 class _Held:
-    """A device that no cache compares: what counts of it is said beside."""
+    """A device that no cache compares, and who hears of its tables: what counts of it is said beside."""
 
-    def __init__(self, device: SolarSail):
-        self.device = device
+    def __init__(self, device: SolarSail, progress: Progress | None):
+        self.device, self.progress = device, progress
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Held)
@@ -115,8 +133,48 @@ def _built(said: str, file: Path | None, stamp: int, held: _Held) -> SailShape:
         shape = Shape((_film(section, own),))
     if section.bus is not None:
         shape = Shape((*shape.parts, _bus(section.bus)), shape.notes)
-    table = kept_tables.table_of(shape, section.cells, shadow=section.shadow, interpolation=section.interpolation)
-    return SailShape(shape, table)
+    facts = {
+        "kind": section.kind,
+        "hash": shape.digest(),
+        "facets": len(shape.elements),
+        "film_area_m2": shape.film_area,
+        "size_m": shape.size,
+        "cells": section.cells,
+        "shadow": section.shadow,
+    }
+    if file is not None:
+        facts["file_sha256"] = hashlib.sha256(file.read_bytes()).hexdigest()
+    parts = 1 if section.air is None else 2
+    table, facts["table"], facts["rays"] = _table(shape, section, LIGHT, _share(held.progress, 0, parts))
+    air = None
+    if section.air is not None:
+        of_air, law = _in_air(shape, section.air)
+        air, facts["air_table"], _ = _table(of_air, section, law, _share(held.progress, 1, parts))
+    return SailShape(shape, table, air, facts)
+
+
+def _share(progress: Progress | None, done: int, parts: int) -> Progress | None:
+    """Who hears of one of several tables."""
+    return None if progress is None else lambda share: progress((done + share) / parts)
+
+
+def _table(shape: Shape, section: ShapeSection, law: Law, progress: Progress | None) -> tuple[LightTable, str, str]:
+    """(a table, its hash, what casts its rays)."""
+    shadow, interpolation = section.shadow, section.interpolation
+    table = kept_tables.table_of(
+        shape, section.cells, shadow=shadow, interpolation=interpolation, law=law, progress=progress
+    )
+    return table, kept_tables.key(shape, section.cells, shadow, interpolation, law), table.backend
+
+
+def _in_air(shape: Shape, said: Air) -> tuple[Shape, Law]:
+    """A shape and its law in air. The limit's law is that of light, with coefficients of its own."""
+    gas = air_law.Air(
+        said.speed_ratio, said.normal_accommodation, said.tangential_accommodation, said.wall_temperature_ratio
+    )
+    b = gas.hyperthermal
+    parts = (replace(part, surface=Surface(b, b if part.is_film else None)) for part in shape.parts)
+    return Shape(tuple(parts)), LIGHT if said.law == "hyperthermal" else gas
 
 
 def _film(section: Any, own: Surface) -> Part:
@@ -169,6 +227,59 @@ def thrust_of_shape(scene: Scene, pressure: float, under_sky: bool) -> Callback:
     assert isinstance(scene.device, SolarSail)
     found = sail_shape(scene)
     return shape_thrust(2 * pressure * AU**2, under_sky, scene.device.roll or 0.0, found.table.numbers.tolist())
+
+
+def acceleration_in_orbit(scene: Scene, pressure: float) -> Callable[[Array], Array]:
+    """A function of normals (k, 3) along r, t, h: the acceleration (k, 3) m/s2 of the light along these, at 1 au, of
+    the scene's sail, whose axes are as `shape_callback` has them. pressure : N/m2 at 1 au."""
+    device = scene.device
+    assert isinstance(device, SolarSail)
+    assert device.mass is not None  # or the scene would not have been accepted
+    roll, push, numbers = device.roll or 0.0, 2 * pressure / device.mass, sail_shape(scene).table.numbers
+
+    def acceleration(normal: Array) -> Array:
+        along = np.array([0.0, 1.0, 0.0]) - normal[:, 1:2] * normal
+        size = np.linalg.norm(along, axis=1)
+        if np.any(size < WEAK):
+            raise ValueError("a normal along the flight leaves open how the shape is rolled about it")
+        x = along / size[:, None]
+        axes = np.stack([x, np.cross(normal, x), normal], axis=-1) @ frames.turn_z(roll).T
+        force, _ = shaped_sail.force_and_torque(frames.to_frame(axes, np.tile([1.0, 0.0, 0.0], (len(x), 1))), numbers)
+        return np.asarray(push * np.einsum("kij,kj->ki", axes, force))
+
+    return acceleration
+
+
+def given_up(found: SailShape, film: Film) -> float:
+    """The largest share of the push along a primer that a shape gives up where its law turns it as the flat film would
+    be best turned, over what it could give at the best angle in the plane of light and primer. Primers to 110 deg from
+    the light, whatever the azimuth of the light about the axis."""
+    pitch = np.radians(np.arange(0.0, 90.0))
+    azimuth = np.radians(np.arange(0.0, 360.0, 30.0))
+    a, d = (each.ravel() for each in np.meshgrid(pitch, azimuth, indexing="ij"))
+    u = np.stack([np.sin(a) * np.cos(d), np.sin(a) * np.sin(d), np.cos(a)], axis=-1)
+    across = np.stack([-np.cos(a) * np.cos(d), -np.cos(a) * np.sin(d), np.sin(a)], axis=-1)
+    force = shaped_sail.force_and_torque(u, found.table.numbers)[0]
+    along, aside = (np.sum(force * each, axis=1).reshape(len(pitch), -1) for each in (u, across))
+    worst = 0.0
+    for theta in np.radians(np.arange(0.0, 111.0, 5.0)):
+        push = np.cos(theta) * along + np.sin(theta) * aside
+        flown = optimal_pitch(theta, film)
+        if not flown.on:
+            continue
+        had = np.array([np.interp(flown.pitch, pitch, column) for column in push.T])
+        worst = max(worst, float(np.max(1 - had / push.max(axis=0))))
+    return worst
+
+
+def air_on_shape(scene: Scene) -> list[float] | None:
+    """What a model reads of the air on the scene's shape; None where it pushes none."""
+    device = scene.device
+    if not isinstance(device, SolarSail) or device.shape is None or device.shape.air is None:
+        return None
+    table = sail_shape(scene).air
+    assert table is not None
+    return shape_air_callback.numbers(device.roll or 0.0, table.numbers)
 
 
 def light_torque(scene: Scene, pressure: np.ndarray, towards: np.ndarray, axes: np.ndarray) -> np.ndarray:

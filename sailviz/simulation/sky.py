@@ -21,7 +21,7 @@ from sailviz.propagate.sky_callback import sky_drag, sky_gravity, sky_steering, 
 from sailviz.propagate.sky_edges import sky_edges
 from sailviz.propulsion.devices import CALLED, ELECTRIC_SAIL, NO_DEVICE, SOLAR_SAIL
 from sailviz.scene.body import CustomBody
-from sailviz.scene.device import SolarSail
+from sailviz.scene.device import SolarSail, air_on_facets
 from sailviz.scene.environment import MagneticSphere
 from sailviz.scene.named_files import folder_of
 from sailviz.scene.sky import (
@@ -231,6 +231,21 @@ def pushed_by_shape(
     parts = dict(keywords.get("sky", {}))
     parts["pushed"] = parts.get("pushed", Pushed())._replace(device=device.kind)
     return device._replace(kind=CALLED), steered, keywords | {"sky": parts}
+
+
+def blown_by_air(scene: Scene, device: LoweredDevice, keywords: dict[str, Any]) -> tuple[LoweredDevice, dict[str, Any]]:
+    """A sail whose shape the air of the scene pushes; every other device as it is."""
+    if not air_on_facets(scene.device):
+        return device, keywords
+    from sailviz.propagate.shape_air_callback import shape_air
+    from sailviz.simulation.sail_shape import air_on_shape
+
+    parts = dict(keywords.get("sky", {}))
+    parts["pushed"] = parts.get("pushed", Pushed())._replace(blown=1)
+    parts["sides"] = sky.Sides(needed=1)
+    forces = (*device.forces, shape_air())
+    more = {"sky": parts, "shape_air": air_on_shape(scene), "edges": sky_edges()}
+    return device._replace(forces=forces), keywords | more
 
 
 def _by_light(found: SceneSky, steered: LoweredSteering, device: int) -> tuple[by_light.Parameters, LoweredSteering]:

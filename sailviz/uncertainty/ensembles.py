@@ -152,7 +152,9 @@ def _strength(device, characteristic_acceleration, model, pitch, clock, throttle
     normal = np.column_stack(attitude.direction_parameters(pitch, clock))
     position = np.tile([AU, 0.0, 0.0], (len(normal), 1))
     out = np.zeros((len(normal), 6))
-    if device == "electric-sail":
+    if callable(device):
+        out[:, 3:] = device(normal)
+    elif device == "electric-sail":
         if model not in MODELS or model == "original":
             raise ValueError(
                 f"ensembles fly electric sails whose thrust falls as 1/r: final, updated, polynomial; not {model!r}"
@@ -256,7 +258,7 @@ def fly_ensemble(
     control: np.ndarray,
     flights: int = 1000,
     seed: int = 0,
-    device: Film | str = "electric-sail",
+    device: Film | str | Callable[[np.ndarray], np.ndarray] = "electric-sail",
     characteristic_acceleration: float = 1e-3,
     model: str = "final",
     pitch: float = 0.0,
@@ -278,7 +280,9 @@ def fly_ensemble(
     control : a `propulsion.voltage_control.row` with its reference pressure (laws that need the wind's density are
     refused); the distance law leads back to the nominal flight, or to aim : (distance m, radial speed m/s) to hold.
     For a solar sail only the row's reference counts, as the irradiance (W/m2) of nominal thrust, and the wind holds
-    irradiances, to which the thrust is proportional. characteristic_acceleration m/s2 at 1 au. pitch and clock rad,
+    irradiances, to which the thrust is proportional. device : "electric-sail", a film, or a function of normals (k, 3)
+    along r, t, h that gives the acceleration (k, 3) m/s2 along these at 1 au, which falls as 1/r2.
+    characteristic_acceleration m/s2 at 1 au. pitch and clock rad,
     fixed; or table (k, 7) of `sailviz.steering.attitude.table`, its rows held from their times on
     (open loop in time). frame : "orbital" or "meridian", from which the clock counts.
     outputs : times (n,) s, or their number; they then lie where something changes anyway. keep : flights kept whole, at

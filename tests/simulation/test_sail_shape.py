@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
+from contextlib import contextmanager
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from sailviz import load_scene, simulate
 from sailviz.constants import AU, DAY, RADIATION_PRESSURE
 from sailviz.errors import SceneError
+from sailviz.propulsion import solar_sail
 from sailviz.propulsion.solar_sail import Film, black_back
+from sailviz.shapes import membranes
+from sailviz.shapes.facets import Coefficients, Surface
 from sailviz.simulation.sail_shape import sail_shape
 
 A_MEAN = 120.0  # m2/kg of the source's sail, 1 kg
@@ -151,11 +159,119 @@ def test_what_does_not_go_with_a_shape_is_refused(device, words):
         load_scene(scene(device))
 
 
-def test_what_knows_flat_sails_only_is_refused():
-    local = scene(SHAPE)
-    local["steering"] = {"kind": "locally-optimal", "goal": "semi-major-axis"}
-    with pytest.raises(SceneError, match="makes the most of a flat film"):
-        load_scene(local)
+def lawful(device: dict, steering: dict, **more: object) -> dict:
+    return scene(device, 60, 5, **more) | {"steering": steering}
+
+
+TOWARDS = {"kind": "locally-optimal", "goal": "semi-major-axis"}
+LAWS = [
+    TOWARDS,
+    {"kind": "lyapunov", "semi_major_axis_au": 1.3, "inclination_deg": 5},
+    {"kind": "optimal", "costates": [1.0, 0.3, 0.9]},
+]
+
+
+@pytest.mark.parametrize("steering", LAWS, ids=["locally-optimal", "lyapunov", "optimal"])
+def test_a_law_turns_a_shape_as_the_flat_film_and_says_what_that_gives_up(steering):
+    """A flat shape flies as the flat film and gives up nothing; a billowed one pushes less along the primer than the
+    law expects."""
+    flat = simulate(load_scene(lawful({"mass_kg": 1, "area_m2": 120.0, "film": "jpl-2015"}, steering)))
+    side = {"side_m": float(np.sqrt(120.0))}
+    device = {"mass_kg": 1, "film": "jpl-2015", "back": "same"}
+    shaped, billowed = (
+        simulate(load_scene(lawful(device | {"shape": square(**side, **more)}, steering)))
+        for more in ({}, {"sag": 0.08})
+    )
+    np.testing.assert_allclose(shaped.position, flat.position, rtol=0, atol=30)
+    expected = shaped.environment["switching_function"]
+    assert expected.max() > 0.1
+    np.testing.assert_allclose(shaped.environment["push_along_primer"], expected, rtol=0, atol=1e-9)
+    assert "push_along_primer" not in flat.environment
+    had, wanted = billowed.environment["push_along_primer"], billowed.environment["switching_function"]
+    on = wanted > 0.05
+    assert np.all(had[on] < wanted[on] - 1e-4)
+
+
+def test_the_share_given_up_is_that_of_the_best_angle():
+    """Of a cap, by its closed form: the push along a primer at the flat film's best pitch, over the best of all."""
+    from scipy.optimize import minimize_scalar
+
+    from sailviz.simulation.sail_shape import given_up
+    from sailviz.steering import optimal_pitch
+
+    found = sail_shape(load_scene(scene(cap(20.0, film="ideal"), 1)))
+    s, k = np.sin(np.radians(20)), np.cos(np.radians(20))
+
+    def push(a: float, theta: float) -> float:
+        z = (1 + k * k) / 2 * np.cos(a) ** 2 + s * s / 4 * np.sin(a) ** 2
+        x = s * s / 2 * np.sin(a) * np.cos(a)
+        # the axis a from the light, the primer theta beyond it on the same side
+        return float(z * np.cos(theta - a) - x * np.sin(theta - a))
+
+    lost = []
+    for theta in np.radians(np.arange(5.0, 111.0, 5.0)):
+        within = {"bounds": (0, np.radians(70)), "method": "bounded"}
+        best = -minimize_scalar(lambda a, theta=theta: -push(a, theta), **within).fun
+        flown = float(optimal_pitch(theta, "ideal").pitch)
+        if flown < np.radians(69):
+            lost.append(1 - push(flown, theta) / best)
+    assert 0 < max(lost) < given_up(found, Film(0.0, 1.0, 0.0)) + 1e-3
+    flat = sail_shape(load_scene(scene({"mass_kg": 14, "film": "jpl-2015", "back": "same", "shape": square()}, 1)))
+    assert given_up(flat, solar_sail.film("jpl-2015")) < 2e-4  # what a grid of whole degrees misses
+
+
+def test_many_shapes_fly_side_by_side_as_one_does():
+    """A flat one as the flat sail in the same sunshine, and a heliogyro, whose push has parts along all axes, without
+    any flicker as its own scene's flight."""
+    sunshine = {"irradiance": {"kind": "cycle", "seed": 3}}
+    many = {"ensemble": [{"name": "many", "flights": 4, "control": "none"}], "environment": sunshine}
+    flat = simulate(load_scene(scene({"mass_kg": 14, "area_m2": 9.27**2}, 100, 5, **many)))
+    shaped = simulate(load_scene(scene({"mass_kg": 14, "back": "same", "shape": square()}, 100, 5, **many)))
+    np.testing.assert_allclose(shaped.setting.ensembles[0].kept, flat.setting.ensembles[0].kept, rtol=1e-10, atol=1.0)
+    assert np.ptp(flat.setting.ensembles[0].kept[:, -1, 0]) > 1.0
+    blade = {"kind": "heliogyro", "blades": 1, "length_m": 50, "chord_m": 2, "pitch_deg": 15, "twist_deg": 5}
+    device = {"mass_kg": 2, "back": "same", "roll_deg": 40, "shape": blade | {"shadow": False, "cells": 8}}
+    one = simulate(load_scene(scene(device, 100, 5)))
+    nominal = simulate(load_scene(scene(device, 100, 5, **many))).setting.ensembles[0]
+    rho, angle, z = nominal.nominal[-1, :3]
+    x, y, up = nominal.axes
+    place = rho * (np.cos(angle) * x + np.sin(angle) * y) + z * up
+    assert np.linalg.norm(place - one.position[-1]) < 2e-8 * AU
+    assert abs(one.position[-1] @ [0, 0, 1]) > 1e7
+
+
+def test_a_shape_flies_with_an_engine_beside_it():
+    """As the flat sail does; its torque is recorded."""
+    engine = {"kind": "thruster", "thrust_mN": 1, "specific_impulse_s": 3000, "steering": {"kind": "tangential"}}
+    runs = []
+    for sail in ({"area_m2": 9.27**2}, {"back": "same", "shape": square()}):
+        whole = scene({}, 30, 4)
+        steering = whole.pop("steering")
+        first = {"kind": "solar-sail", "mass_kg": 14, **sail, "steering": steering}
+        runs.append(simulate(load_scene(whole | {"device": [first, engine]})))
+    np.testing.assert_allclose(runs[1].position, runs[0].position, rtol=0, atol=30)
+    assert runs[1].mass[-1] < 14
+    assert np.abs(runs[1].environment["light_torque_x_N_m"]).max() < 1e-12
+
+
+def test_a_shape_is_that_of_the_first_sail():
+    sail = {"kind": "solar-sail", "mass_kg": 14, "area_m2": 50, "steering": {"kind": "sun-facing"}}
+    whole = scene({}, 30, 4)
+    del whole["steering"]
+    other = {"name": "second", "kind": "solar-sail", "back": "same", "shape": square()}
+    with pytest.raises(SceneError, match="has that one's shape: give this one its area"):
+        load_scene(whole | {"device": [sail, other | {"steering": {"kind": "sun-facing"}}]})
+
+
+def test_a_shape_is_swept(tmp_path):
+    """The more a film sags the less far it comes."""
+    from sailviz import sweep
+
+    device = {"mass_kg": 1, "back": "same", "shape": square(side_m=10.0)}
+    sags = {"device.shape.sag": [0.0, 0.05, 0.1]}
+    found = sweep(scene(device, 50, 3), sags, report=["radius_au@end"], engine="serial")
+    radii = list(found.table["radius_au@end"])
+    assert radii[0] > radii[1] > radii[2]
 
 
 def test_a_file_that_lies_is_told_when_the_scene_is_flown(tmp_path):
@@ -204,3 +320,64 @@ def test_scenes_without_a_shape_say_nothing_of_it():
     values = load_scene(scene({"mass_kg": 14, "area_m2": 80.0})).resolved()["device"]
     assert not {"shape", "back", "roll"} & set(values)
     assert DAY == 86400.0
+
+
+def shaped_file(folder: Path, side: float) -> Path:
+    """A scene of two days beside a flat square in a file."""
+    b = Coefficients(0.0, 1.0, 0.0)
+    membranes.square(side, Surface(b, b), rows=3).mesh.export(str(folder / "sail.stl"))
+    text = (
+        'title = "a"\n[start]\nkind = "circular"\nradius_au = 1\n[device]\nkind = "solar-sail"\nmass_kg = 1\n'
+        'back = "same"\nshape = {kind = "file", file = "sail.stl", unit = "m", cells = 4}\n'
+        '[steering]\nkind = "sun-facing"\n[propagation]\nduration_d = 2\noutputs = 5\n'
+    )
+    (folder / "a.toml").write_text(text)
+    return folder / "a.toml"
+
+
+def test_a_recording_says_what_was_pushed_and_another_file_is_another_run(tmp_path):
+    import sailviz
+    from sailviz.shapes import kept_tables
+
+    told = []
+    for side in (5.0, 6.0):
+        path = shaped_file(tmp_path, side)
+        sailviz.record(load_scene(path), tmp_path / "a.rrd")
+        recording = sailviz.read(tmp_path / "a.rrd")
+        facts = json.loads(str(recording["/scene"]["craft_shape"][0]))
+        assert facts["film_area_m2"] == pytest.approx(side**2, rel=1e-6)
+        assert facts["file_sha256"] == hashlib.sha256((tmp_path / "sail.stl").read_bytes()).hexdigest()
+        assert facts["facets"] == len(sail_shape(load_scene(path)).shape.elements)
+        assert facts["rays"] == "none"
+        assert (kept_tables.folder() / f"{facts['table']}.table").is_file()
+        told.append((load_scene(path).identity(), recording.identity, facts["hash"], facts["table"]))
+    assert told[0][0] == told[1][0]
+    assert all(one != other for one, other in zip(told[0][1:], told[1][1:], strict=True))
+
+
+def test_a_table_is_made_once_under_a_bar_of_its_own(tmp_path, monkeypatch):
+    from click.testing import CliRunner
+
+    from sailviz.cli import shared
+    from sailviz.cli.entry import main
+    from sailviz.shapes import kept_tables
+    from sailviz.simulation import sail_shape as of_scenes
+
+    heard: dict[str, list[float]] = {}
+
+    @contextmanager
+    def bar(title, quiet):
+        yield heard.setdefault(title, []).append
+
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setattr(shared, "progress_bar", bar)
+    path = shaped_file(tmp_path, 4.0)
+    for _ in range(2):
+        of_scenes._built.cache_clear()
+        found = CliRunner().invoke(main, ["run", str(path), "-o", str(tmp_path / "a.rrd")])
+        assert found.exit_code == 0, found.output
+        monkeypatch.setattr(kept_tables.light_table, "build", None)  # the second run finds it made
+    shares = heard["Light on the shape"]
+    assert shares
+    assert shares == sorted(shares)
+    assert shares[-1] == 1.0

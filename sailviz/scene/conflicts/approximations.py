@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.records import device_of, start_of, steering_of
 from sailviz.scene.conflicts.surroundings import WINDS
+from sailviz.scene.device import air_on_facets
 from sailviz.scene.sections import FirstOrderApproximation, QuasiCircularApproximation
 from sailviz.scene.start import CircularStart
 from sailviz.scene.values import Section
@@ -33,6 +34,8 @@ def _beyond_quasi_circular(scene: Scene) -> list[str]:
         found.append('the quasi-circular decay begins on a circular orbit: body = "earth", start.kind = "circular"')
     if not fits.tether and around.atmosphere is None:
         found.append("the quasi-circular decay needs a plasma brake or the drag of an atmosphere")
+    if air_on_facets(device):
+        found.append("the quasi-circular decay knows drag on an area, not on a shape")
     if not fits.decays or device.active is not None:
         found.append("the quasi-circular decay knows a plasma brake that is always on, and drag")
     if around.solar_flux == "cycle":

@@ -9,7 +9,7 @@ from sailviz.scene.conflicts.devices import CONTROLS
 from sailviz.scene.conflicts.records import device_of, devices_of, start_of, steering_of
 from sailviz.scene.conflicts.starts import STARTS
 from sailviz.scene.conflicts.surroundings import IRRADIANCES, WINDS
-from sailviz.scene.device import SolarSail, control_of
+from sailviz.scene.device import ElectrochromicControl, SolarSail, control_of
 from sailviz.scene.film import tells_film
 from sailviz.scene.units_in_keys import words_of_kind
 
@@ -120,25 +120,18 @@ def varying_drive(scene: Scene) -> Faults:
 
 def sail_with_a_shape(scene: Scene) -> Faults:
     """What knows flat sails only."""
-    shaped = [device for device in scene.devices if isinstance(device, SolarSail) and device.shape is not None]
-    if not shaped:
+    device = scene.device
+    if not isinstance(device, SolarSail) or device.shape is None:
         return []
     found: Faults = []
-    if scene.place is not None:
-        found.append(("device.shape", "a sail with a shape is its craft's only device, in no list of several"))
-    if shaped[0].control is not None:
+    if device.control is not None:
         found.append(("device.control", "a film that darkens is known of flat sails only, not of one with a shape"))
-    if steering_of(scene).primer:
-        found.append(
-            (
-                "steering.kind",
-                f'"{scene.steering.kind if scene.steering else ""}" makes the most of a flat film: '
-                "give the shape's flat sail by area, or another steering",
-            )
-        )
-    if scene.ensemble or scene.chaos:
-        place = "ensemble[0]" if scene.ensemble else "chaos[0]"
-        found.append((place, "ensembles fly flat sails, not one with a shape"))
+    for i, item in enumerate(scene.ensemble):
+        if isinstance(item.control, ElectrochromicControl):
+            found.append((f"ensemble[{i}].control", "a film that darkens is known of flat sails only"))
+        if steering_of(scene).frame(scene.steering) == "meridian":
+            words = "a shape that is laid by the meridian turns along the flight: count from the orbit's frame"
+            found.append((f"ensemble[{i}].name", words))
     return found
 
 

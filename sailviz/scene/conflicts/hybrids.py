@@ -11,7 +11,7 @@ from sailviz.scene.conflicts import craft, departures
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.records import start_of
 from sailviz.scene.conflicts.sky import light, steered_by_light
-from sailviz.scene.device import Devices, NoDevice, PlasmaBrake, Thruster, control_of
+from sailviz.scene.device import Devices, NoDevice, PlasmaBrake, SolarSail, Thruster, control_of
 from sailviz.scene.phases import Until, until_of
 from sailviz.words import duration, shown
 
@@ -85,6 +85,9 @@ def beside_conflicts(scene: Scene) -> Faults:
     for i, device in enumerate(scene.beside):
         place = f"device[{i}]"
         found += _kinds(scene, device, place)
+        if isinstance(device, SolarSail) and device.shape is not None:
+            words = "a craft turns with its first sail, and has that one's shape: give this one its area"
+            found.append((f"{place}.shape", words))
         if _word(device.name) in names:
             found.append((f"{place}.name", f"another device is called {shown(device.name)} already"))
         names.append(_word(device.name))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.records import atmosphere_of, device_of, ionosphere_of, start_of, steering_of
-from sailviz.scene.device import PlasmaBrake
+from sailviz.scene.device import PlasmaBrake, air_on_facets
 from sailviz.scene.environment import MsisAtmosphere
 
 if TYPE_CHECKING:
@@ -55,6 +55,12 @@ def density_of_plasma(scene: Scene) -> Faults:
 def drag(scene: Scene) -> Faults:
     """Air needs an area to brake, and an area needs air."""
     device, air, found = scene.device, scene.environment.atmosphere, []
+    if air_on_facets(device):
+        if air is None:
+            found.append(("device.shape.air", "air on a shape without an atmosphere does nothing"))
+        if device.drag_area is not None:
+            found.append(("device.drag_area", "the air pushes the facets of the shape: leave the area out"))
+        return found
     if air is not None and (device.drag_area is None or device.mass is None):
         found.append(("device.drag_area", "an atmosphere needs the area and the mass that it brakes"))
     if device.drag_area is not None and air is None:

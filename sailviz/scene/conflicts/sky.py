@@ -188,7 +188,7 @@ def drag_by_attitude(scene: Scene) -> Faults:
             return [("device.edge_area", 'belongs to drag_area = "attitude"')]
         return []
     if not isinstance(device, SolarSail) or device.area is None:
-        return [("device.drag_area", '"attitude" is for a solar sail that gives its area')]
+        return [("device.drag_area", '"attitude" is for a solar sail that gives its area; of a shape, shape.air')]
     return []
 
 

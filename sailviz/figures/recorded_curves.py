@@ -11,7 +11,7 @@ import numpy as np
 from sailviz.figures.drawing import FigureError
 from sailviz.recording.contract import word
 from sailviz.recording.drawing import style as colors
-from sailviz.recording.drawing.plots import COLOR_OF, LOGARITHMIC, UNITS, WORDS
+from sailviz.recording.drawing.plots import COLOR_OF, LOGARITHMIC, UNITS, WORDS, scale_of
 from sailviz.recording.drawing.shares import device_colors
 from sailviz.run.arrays import Run
 from sailviz.scene.quantities import DIMENSIONS, Quantity, spellings
@@ -186,7 +186,7 @@ def column(run: Run, name: str) -> Curve:
     ending = max((u for u in (*UNITS, *LOGARITHMIC) if name.endswith(u)), key=len, default="")
     words = WORDS.get(name, name.removesuffix(ending).replace("_", " ").capitalize())
     dense = ending in LOGARITHMIC
-    factor, unit = (1.0, LOGARITHMIC[ending]) if dense else UNITS.get(ending, (1.0, ""))
+    factor, unit = (1.0, LOGARITHMIC[ending]) if dense else scale_of(name, ending)
     values = factor * np.asarray(run.environment[name], float)
     if not np.isfinite(values).any():
         raise FigureError(f"{name} is never a number in this recording")

@@ -13,11 +13,11 @@ import rerun.blueprint as rrb
 
 from sailviz.errors import RecordingError
 from sailviz.recording.drawing import style
+from sailviz.recording.drawing.lit_shape import colors_of, packed
 from sailviz.recording.drawing.log import f4
 from sailviz.recording.sinks import attach, discard, resolve
 
 TIMELINE = "pitch"  # whole degrees
-RAMP = np.array([[18, 22, 40], *style.PUSH_RAMP], float)  # in the shade, then weak to strong
 
 
 @dataclass(frozen=True)
@@ -34,15 +34,6 @@ class LitShape:
     centre: np.ndarray
     force: np.ndarray
     words: str
-
-
-def colors_of(pressure: np.ndarray) -> np.ndarray:
-    """Colours (..., 4) uint8 of pressures from 0, in the shade, to 1."""
-    at = np.clip(pressure, 0.0, 1.0) * (len(RAMP) - 1)
-    low = np.minimum(at.astype(int), len(RAMP) - 2)
-    share = (at - low)[..., None]
-    found = RAMP[low] * (1 - share) + RAMP[low + 1] * share
-    return np.concatenate([np.round(found), np.full((*found.shape[:-1], 1), 255.0)], axis=-1).astype(np.uint8)
 
 
 def record_shape(shape: LitShape, path: str | os.PathLike[str]) -> None:
@@ -83,9 +74,8 @@ def log_shape(stream: rr.RecordingStream, shape: LitShape, size: float) -> None:
     stream.log("/shape/facets", rr.Mesh3D(vertex_positions=corners, triangle_indices=faces), static=True)
     stream.log("/shape/words", rr.TextDocument(shape.words, media_type="text/markdown"), static=True)
     index = [rr.TimeColumn(TIMELINE, sequence=shape.pitch)]
-    colors = np.repeat(colors_of(shape.pressure), 3, axis=1).reshape(-1, 4).astype(np.uint32)
-    packed = (colors[:, 0] << 24) | (colors[:, 1] << 16) | (colors[:, 2] << 8) | colors[:, 3]
-    columns = rr.Mesh3D.columns(vertex_colors=packed.astype(np.uint32))
+    colors = np.repeat(packed(colors_of(shape.pressure)), 3, axis=1)
+    columns = rr.Mesh3D.columns(vertex_colors=colors.ravel())
     stream.send_columns("/shape/facets", index, columns.partition([len(corners)] * len(shape.pitch)))
     arrows = {
         "/shape/force": (shape.centre, 0.6 * size * shape.force, style.PUSH),

@@ -28,6 +28,7 @@ from sailviz.recording.drawing.flight_words import about_together, log_now_toget
 from sailviz.recording.drawing.flights import Flight, story_beside
 from sailviz.recording.drawing.landmarks import VIOLATION
 from sailviz.recording.drawing.layout import Layout, Space, Span
+from sailviz.recording.drawing.lit_shape import lit_words
 from sailviz.recording.drawing.log import Index, Picture
 from sailviz.recording.drawing.low_orbit import log_low_orbit, orbit_words
 from sailviz.recording.drawing.now_line import log_now
@@ -123,6 +124,7 @@ class Drawing:
             *gap_words(self._setting),
             *sparse,
             *stowed_words(story.told),
+            *lit_words(story.told),
         ]
         text = about(self._setting, notes, steady, aside)
         self._picture.log_static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))

@@ -128,9 +128,10 @@ class Picture:
         """Colour and width, in ui points, of the arrows of an entity."""
         self.log_static(path, rr.Arrows3D.from_fields(colors=[list(color)], radii=points(width)))
 
-    def log_arrows(self, path: str, index: Index, vectors: ArrayLike) -> None:
-        """vectors (n, 3): one arrow a row, from the origin of its parent's frame."""
-        self.log_columns(path, index, rr.Arrows3D.columns(vectors=f4(vectors)))
+    def log_arrows(self, path: str, index: Index, vectors: ArrayLike, origins: ArrayLike | None = None) -> None:
+        """vectors (n, 3): one arrow a row, from the origin of its parent's frame or from origins (n, 3)."""
+        more: dict[str, Any] = {} if origins is None else {"origins": f4(origins)}
+        self.log_columns(path, index, rr.Arrows3D.columns(vectors=f4(vectors), **more))
 
     def log_strip_style(self, path: str, color: Color | None, width: float) -> None:
         """Colour, unless it has rows, and width, in ui points, of the lines of an entity."""

@@ -57,8 +57,10 @@ def near_of(samples: Samples, sail: bool, sun: bool) -> Near:
 
 
 def is_given(samples: Samples) -> bool:
-    """Whether the craft's attitude came with the arrays, rolled about its normal in a way of its own."""
-    return samples.run.setting.resolved.get("attitude") == "given"
+    """Whether the craft's attitude came with the arrays, or is that of a shape, rolled about its normal in a way of its
+    own."""
+    setting = samples.run.setting
+    return setting.resolved.get("attitude") == "given" or bool(setting.craft.shape)
 
 
 def axes_rtn(samples: Samples) -> np.ndarray:

@@ -329,6 +329,11 @@ def approximation_plot(first: Run) -> Plot:
     )
 
 
+def scale_of(name: str, ending: str) -> tuple[float, str]:
+    """Factor and unit on the plot of a column with an ending of UNITS: that of a torque is no force per length."""
+    return (1e6, "µN m") if "_torque_" in name else UNITS.get(ending, (1.0, ""))
+
+
 def environment_plot(name: str) -> Plot:
     """A column of the environment: title from its name, unit from the name's ending, densities as logarithms."""
     ending = max((u for u in (*UNITS, *LOGARITHMIC) if name.endswith(u)), key=len, default="")
@@ -344,13 +349,14 @@ def environment_plot(name: str) -> Plot:
             return np.asarray(np.where(np.isfinite(found), found, np.nan))
 
         return Plot(name, f"{title} [log10 of {unit}]", (words.lower(),), (color,), values, natural=DECADE)
-    factor, unit = (1e-3, "kV") if name == "thrust_voltage_V" else UNITS.get(ending, (1.0, ""))
+    turns = "_torque_" in name
+    factor, unit = (1e-3, "kV") if name == "thrust_voltage_V" else scale_of(name, ending)
     return Plot(
         name,
         f"{title} [{unit}]" if unit else title,
         (words.lower(),),
         (color,),
         lambda run: factor * run.environment[name][:, None],
-        natural=-0.6,
-        bonus=1.2 if name == "plasma_force_N_m" else 0.9,
+        natural=1.0 if turns else -0.6,  # less than 1 µN m is of no weight, and may be rounding
+        bonus=1.2 if name == "plasma_force_N_m" else 0.6 if turns else 0.9,
     )

@@ -10,7 +10,7 @@ import numpy as np
 import rerun as rr
 
 from sailviz.frames import quaternion, unit
-from sailviz.recording.drawing import cameras, style
+from sailviz.recording.drawing import cameras, lit_shape, style
 from sailviz.recording.drawing.cameras import Camera
 from sailviz.recording.drawing.craft import Glow, log_stowing
 from sailviz.recording.drawing.layout import Space
@@ -47,8 +47,12 @@ def log_close_up(picture: Picture, story: Story, below: int) -> Space:
     log_body(picture, story)
     eye = eye_of(story)
     length, names = push_length(story), Names(story, (ASPECT[below] * HIGH[below], HIGH[below]))
-    log_arrow(picture, story, "push", style.PUSH, length, style.WIDTH["close push"])
-    add_name(names, "push", style.PUSH, beyond(length, eye, 2.6), push_words(story.push), PUSH)
+    lever = lit_shape.lever_of(story)
+    acts = np.zeros_like(length) if lever is None else lever.centre * np.any(length, axis=1, keepdims=True)
+    log_arrow(picture, story, "push", style.PUSH, length, style.WIDTH["close push"], None if lever is None else acts)
+    add_name(names, "push", style.PUSH, acts + beyond(length, eye, 2.6), push_words(story.push), PUSH)
+    if lever is not None and lit_shape.turns(story, lever):
+        log_torque(picture, story, eye, names, lever.torque)
     log_close_shares(picture, story, names, length, SHORT + LONGER)
     velocity = VELOCITY * story.near.velocity
     log_arrow(picture, story, "velocity", style.SPEED, velocity, style.WIDTH["close arrow"])
@@ -63,7 +67,7 @@ def log_close_up(picture: Picture, story: Story, below: int) -> Space:
     if primer is not None and story.about("primer"):
         log_arrow(picture, story, "primer", style.PRIMER, PRIMER * primer, style.WIDTH["close arrow"])
         add_name(names, "primer", style.PRIMER, beyond(PRIMER * primer, eye, 1.0), "primer", ARROW)
-    at, target = cameras.fit(places_in_sight(story, length, velocity), eye, ASPECT[below], FILL)
+    at, target = cameras.fit(places_in_sight(story, acts + length, velocity), eye, ASPECT[below], FILL)
     name = f"{story.craft.close_name or story.setting.craft.label or 'Craft'} close up"
     name += ": what pushes it" if story.most > 0 else ""
     camera = Camera(name, "/sail", tuple(at.tolist()), tuple(target.tolist()))
@@ -75,7 +79,10 @@ def log_body(picture: Picture, story: Story) -> None:
     """The craft in its attitude."""
     samples, craft = story.samples, story.craft
     picture.log_pose("/sail/body", story.index, quaternion=quaternion(story.near.body))
-    craft.log_shape(picture, "/sail/body/shape", True)
+    if lit_shape.is_lit(story):
+        lit_shape.log_facets(picture, story, "/sail/body/shape/facets")
+    else:
+        craft.log_shape(picture, "/sail/body/shape", True)
     picture.log_scale("/sail/body/shape", craft.close_size)
     log_stowing(picture, "/sail/body/shape", craft, story.index, story.stowed, True)
     Glow(picture, "/sail/body", craft).add(samples.index_of, own_on(samples.run))
@@ -88,11 +95,26 @@ def push_length(story: Story) -> np.ndarray:
     return np.asarray(length[:, None] * unit(story.near.thrust))
 
 
-def log_arrow(picture: Picture, story: Story, name: str, color: Color, vectors: np.ndarray, width: float) -> None:
-    """An arrow from the middle, unless it is never there."""
+def log_arrow(
+    picture: Picture,
+    story: Story,
+    name: str,
+    color: Color,
+    vectors: np.ndarray,
+    width: float,
+    origins: np.ndarray | None = None,
+) -> None:
+    """An arrow from the middle, or from origins (n, 3), unless it is never there."""
     if np.any(vectors):
         picture.log_arrow_style(f"/sail/{name}", color, width)
-        picture.log_arrows(f"/sail/{name}", story.index, vectors)
+        picture.log_arrows(f"/sail/{name}", story.index, vectors, origins)
+
+
+def log_torque(picture: Picture, story: Story, eye: np.ndarray, names: Names, torque: np.ndarray) -> None:
+    """The torque (n, 3) N m of the light on a shape, from its origin."""
+    arrows, color = lit_shape.torque_arrows(torque), style.QUANTITY["torque"]
+    log_arrow(picture, story, "torque", color, arrows, style.WIDTH["close arrow"])
+    add_name(names, "torque", color, beyond(arrows, eye, 1.2), lit_shape.torque_words(torque), ARROW)
 
 
 def add_name(names: Names, name: str, color: Color, place: np.ndarray, words: str | list[str], rank: int) -> None:

@@ -34,6 +34,7 @@ QUANTITY = {  # what a curve shows, by the words of its plot
     "distance from the Earth": [92, 160, 255],
     "push": PUSH,
     "drag": PUSH,
+    "torque": [232, 232, 255],
     "cone angle": PUSH,
     "sail angle": SUN,
     "clock angle": [255, 150, 220],

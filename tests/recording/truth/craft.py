@@ -72,7 +72,7 @@ def stowing(f, entity):
 def film(f, entity):
     """The side of the film that is visible from the Sun is golden, the other one blue; its normal is /attitude/normal;
     it bulges away from the light and has the side of the square that is told."""
-    if "mesh" in f.truth.resolved:
+    if own_box(f) is not None:
         own_part(f, entity)
         return
     normal = seen(f, entity, f.truth.normal)
@@ -91,14 +91,28 @@ def film(f, entity):
         assert points[:, 2].max() > 0.03 * size(f, entity)
 
 
+def own_box(f):
+    """Corners, m, of the box round a mesh of one's own as it is told, or round a billowed square sail with a bus by
+    its formula; None of a craft that is drawn as its kind is."""
+    if "mesh" in f.truth.resolved:
+        told = f.truth.resolved["mesh"]
+        return np.array(told["low_m"]), np.array(told["high_m"])
+    shape = (f.truth.resolved.get("device") or {}).get("shape") if "craft_shape" in f.truth.scene else None
+    if shape is None:
+        return None
+    half, depth = shape["side"] / 2, shape["side"] / 2 * (np.tan(shape["cone"]) + 2 * shape["sag"])
+    middle, size = np.array(shape["bus"]["centre"]), np.array(shape["bus"]["size"])
+    return np.minimum([-half, -half, 0], middle - size / 2), np.maximum([half, half, depth], middle + size / 2)
+
+
 def own_part(f, entity):
     """Of a mesh of one's own all parts together fill the box that is told, in m over its longest side, in the attitude
     of the row; the lit side of a film looks along -z of the body."""
-    top, told = entity.rsplit("/", 1)[0], f.truth.resolved["mesh"]
+    top = entity.rsplit("/", 1)[0]
     drawn = [each for each in (f"{top}/film_lit", f"{top}/bus") if each in f.picture.entities]
-    low, high = np.array(told["low_m"]), np.array(told["high_m"])
+    low, high = own_box(f)
     side = float(f.truth.scene["craft_side_m"])
-    assert side == (high - low).max()
+    assert abs(side - (high - low).max()) < 1e-9 * side
     for row in some(f, 4):
         points = np.concatenate([parts(f, each, row) for each in drawn]) * side / size(f, entity)
         same_place(points.min(0), low, size=10 * side)

@@ -444,6 +444,30 @@ def quaternions() -> sailviz.Run:
     )  # fmt: skip
 
 
+def billowed() -> sailviz.Run:
+    """A square sail that billows, a bus on its Sun side whose shadow falls on it, rolled, out of the plane."""
+    from sailviz.shapes.shadows import ray_caster
+
+    bus = {"size_m": [1.2, 1.0, 0.8], "centre_m": [0.3, -0.2, -1.5]}
+    shape = {"kind": "square", "side_m": 10, "cone_deg": 4, "sag": 0.03, "bus": bus, "cells": 2}
+    return sailviz.simulate(
+        {
+            "title": "billowed",
+            "start": {"kind": "circular", "radius_au": 1, "inclination_deg": 10},
+            "device": {
+                "kind": "solar-sail",
+                "mass_kg": 5,
+                "film": "jpl-2015",
+                "back": "same",
+                "roll_deg": 25,
+                "shape": shape | {"shadow": ray_caster() == "embreex"},
+            },
+            "steering": {"kind": "orbital", "pitch_deg": 35, "clock_deg": 60},
+            "propagation": {"duration_d": 300, "outputs": 41},
+        }
+    )
+
+
 def competition() -> sailviz.Run:
     """A flyby of a planet of GTOC13, and a sail after it that breaks a rule: it ends far from where it says."""
     from sailviz.checks.gtoc13 import judge, sail
@@ -509,6 +533,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "wind": scene("wind/voltage-limits", **SMALL),
     "competition": competition,
     "quaternions": quaternions,
+    "billowed": billowed,
     "held": scene("wind/held-displaced", propagation__outputs=61),
     "light": scene("wind/flickering-sun", **SMALL),
     "round a planet": round_a_planet,

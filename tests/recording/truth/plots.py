@@ -24,6 +24,7 @@ UNITS = {  # SI to what a title says
     "nPa": 1e9,
     "nT": 1e9,
     "nN": 1e9,
+    "µN m": 1e6,
     "mN": 1e3,
     "mA": 1e3,
     "kV": 1e-3,

@@ -6,6 +6,7 @@ import re
 
 import numpy as np
 
+from . import lit
 from .facts import path_word, unit
 from .measure import hue, same_direction, same_place, same_turn
 from .now import PUSHES, told
@@ -292,7 +293,8 @@ def push_name(f, entity):
 def close_push(f, entity):
     """From the craft along /thrust, 7.5 long and 4.5 times the root of its share of the largest more."""
     origin, vector = arrows(f, entity)
-    same_place(origin, home(f, entity))
+    acts = lit.acts_at(f)
+    same_place(origin, home(f, entity) if acts is None else acts, size=10)
     same_direction(vector, seen(f, entity, f.truth.thrust))
     push = strength(f)
     expected = np.where(push > 0, 7.5 + 4.5 * np.sqrt(push / push.max()), 0.0)

@@ -12,7 +12,22 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, partial
 
-from . import arrival, close_up, craft, earth, ensembles, landmarks, low, now, phases, plots, push, system, together
+from . import (
+    arrival,
+    close_up,
+    craft,
+    earth,
+    ensembles,
+    landmarks,
+    lit,
+    low,
+    now,
+    phases,
+    plots,
+    push,
+    system,
+    together,
+)
 
 INERTIAL = "inertial, carried along the orbit where a run is slowed"
 NEAR = "orbital: radial, transverse, normal; of a tether transverse, normal, up"
@@ -175,6 +190,7 @@ def of_craft(top: str) -> list[Claim]:
         Claim(f"{shape}/hub", MESH, "/attitude normal", BODY, "1", craft.hub),
         Claim(f"{shape}/sheath", f"{SPLAT} {MOVE}", "/thrust on", BODY, "1", craft.sheath),
         Claim(f"{shape}/bus", MESH, "/attitude normal", BODY, "1", bus),
+        Claim(f"{shape}/facets", MESH, "/scene resolved, /attitude quaternion", BODY, "1", lit.facets),
         Claim(f"{shape}/panels", MESH, "/attitude quaternion", BODY, "1", craft.panels),
         Claim(f"{shape}/nozzle", MESH, "/attitude normal", BODY, "1", craft.nozzle),
         Claim(f"{shape}/plume", f"{SPLAT} {MOVE}", "/thrust on, acceleration_m_s2", BODY, "1", craft.plume),
@@ -185,7 +201,7 @@ def of_craft(top: str) -> list[Claim]:
         Claim(f"{tether}/sheath", f"{SPLAT} {MOVE}", "/thrust on", BODY, "-1", craft.sheath),
     )
     near = top != "/world/craft"
-    rows = [row for row in rows if near or not row.pattern.endswith(("/seams", "/tips"))]
+    rows = [row for row in rows if near or not row.pattern.endswith(("/seams", "/tips", "/facets"))]
     if top != "/world/rtn":
         return [row for row in rows if not row.pattern.startswith(tether)]
     wheel = ("/tethers", "/rim", "/tips", "/hub", "/disc", "/dot", "shape/sheath")  # no electric sail flies so low
@@ -194,7 +210,7 @@ def of_craft(top: str) -> list[Claim]:
 
 def bus(f, entity):
     """A sail's bus is on the dark side; that of others is in the middle; one of one's own is where its mesh says."""
-    if "mesh" in f.truth.resolved:
+    if craft.own_box(f) is not None:
         craft.own_part(f, entity)
         return
     (craft.shade_bus if f.truth.kind == "solar-sail" else craft.middle)(f, entity)
@@ -210,6 +226,8 @@ CLOSE_UP = (
     Claim("/sail/radial", LINE, "/state position_m", NEAR, "direction", close_up.radial),
     Claim("/sail/normal", ARROW, "/attitude normal", NEAR, "-1", close_up.sunward_normal),
     Claim("/sail/push", ARROW, "/thrust acceleration_m_s2", NEAR, "7.5 and a root", push.close_push),
+    Claim("/sail/torque", ARROW, "light_torque_*_N_m", NEAR, "2.5 and a root", lit.torque_arrow),
+    Claim("/sail/torque_name", POINT, "light_torque_*_N_m", NEAR, "in words", lit.torque_name),
     Claim("/sail/shares/*", ARROW, "/thrust/*", NEAR, "that of the push", push.share_arrow),
     Claim("/sail/shares/*/name", POINT, "/thrust/*", NEAR, "in words", push.share_name),
     Claim("/sail/push_name", POINT, "/thrust magnitude_m_s2", NEAR, "in words", close_up.push_word),

@@ -112,6 +112,14 @@ CATALOGUE = {
         "analytic",
         "escape",
     ),
+    "billow": Entry(
+        "What billow costs: force of a flat film and of billowed ones over the incidence of the light",
+        f"{OURS}; film jpl-2015, the same area across; each curve as far as the light meets the front alone",
+        (12, 5.4),
+        (1, 2),
+        "shapes",
+        "incidence",
+    ),
     "drag-profile": Entry(
         "Plasma brake: drag per length of tether over altitude, and the shapes that stand for it",
         f"{OURS}; force law reconstructed after Janhunen (2014), ionosphere of IRI-2020; topside models differ by more "

@@ -7,6 +7,7 @@ from independent.constants import AU, EPSILON, MU_SUN
 from independent.designed_orbits import designed
 from independent.film import film_force, film_of
 from independent.plasma_brake import brake
+from independent.shapes import shaped_sail
 from independent.sky import from_light, sunlight, wind_blows
 from independent.steering import normal
 
@@ -21,6 +22,8 @@ def device(scene):
 
 def solar_sail(scene):
     craft, film = scene.device, film_of(scene.device)
+    if craft.shape is not None:
+        return shaped_sail(scene)
     ac = craft.characteristic_acceleration
     if ac is not None:
         pass

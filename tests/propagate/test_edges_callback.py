@@ -82,12 +82,12 @@ def test_below_and_above_the_table_is_a_cell_of_its_own():
 def test_an_arc_is_foreseen_to_a_hundredth_of_a_second(dt):
     """At 7.5 km/s. What is missed is the change of J2's pull, with the cube of the time."""
     p = plan(sailviz.load_scene("deorbit/estcube-2-maximum"))
-    s, out = dop853.start(0.0, p.position, p.velocity, p.mass), np.empty((6, 1))
+    s, out = dop853.start(0.0, p.position, p.velocity, p.seventh), np.empty((6, 1))
     arguments = (p.schedule.breaks, p.schedule.factors.copy(), watch([]), np.array([dt]), out)
     dop853.advance(s, p.model, *arguments, dt, 1e-13, np.inf)
-    first = dop853.start(0.0, p.position, p.velocity, p.mass)
+    first = dop853.start(0.0, p.position, p.velocity, p.seventh)
     dop853.advance(first, p.model, *arguments[:3], np.zeros(1), np.empty((6, 1)), dt, 1e-13, np.inf)
-    state = np.concatenate([p.position, p.velocity, [p.mass], first.work[0, 3:6]])
+    state = np.concatenate([p.position, p.velocity, [p.seventh], first.work[0, 3:6]])
     missed = np.linalg.norm(np.array(along(dt, state)) - out[:3, 0])
     assert missed < 75.0 * (dt / 270.0) ** 3 + 1e-8
 
@@ -95,7 +95,7 @@ def test_an_arc_is_foreseen_to_a_hundredth_of_a_second(dt):
 def flight(name, rows, tolerance=1e-10):
     """Plan, integration and states (7, n) of the first quarter of a day, and of all its steps."""
     p = plan(sailviz.load_scene(name))
-    s, ends = dop853.start(0.0, p.position, p.velocity, p.mass), []
+    s, ends = dop853.start(0.0, p.position, p.velocity, p.seventh), []
     times = np.linspace(0.0, 21_600.0, rows)
     out = np.empty((6, rows))
     for i in range(rows):
@@ -104,7 +104,7 @@ def flight(name, rows, tolerance=1e-10):
             out[:, i : i + 1], 21_600.0, tolerance, np.inf,
         )  # fmt: skip
         ends.append(dop853.time(s))
-    return p, s, np.vstack([out, np.full(rows, p.mass)]), times, np.unique(ends)
+    return p, s, np.vstack([out, np.full(rows, p.seventh)]), times, np.unique(ends)
 
 
 def test_no_step_crosses_a_face_of_the_table():

@@ -29,7 +29,7 @@ def fly(p, times, tolerance, largest_step, integrator):
     s = (
         begun(p)
         if integrator == p.choice.integrator
-        else dop853.start(0.0, p.position, p.velocity, p.mass, len(p.names))
+        else dop853.start(0.0, p.position, p.velocity, p.seventh, len(p.names))
     )
     out, factors = np.full((6, len(times)), np.nan), p.schedule.factors.copy()
     arguments = (p.schedule.breaks, factors, p.watch, times, out, p.scene.propagation.duration)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from independent.bodies import ageing_sail, is_body, wheel
 from independent.constants import AU, EPSILON, MU_SUN
 from independent.designed_orbits import designed
 from independent.film import film_force, film_of
@@ -15,6 +16,8 @@ from independent.steering import normal
 def device(scene):
     """(t, r, v, mass) -> acceleration, mass rate; None without a device."""
     craft = scene.device
+    if is_body(scene):
+        return ageing_sail(scene) if craft.kind == "solar-sail" else wheel(scene)
     return {"solar-sail": solar_sail, "electric-sail": electric_sail, "plasma-brake": brake, "thruster": thruster}.get(
         craft.kind, lambda scene: None
     )(scene)

@@ -36,7 +36,7 @@ def integrate(scene, state, times):
     longest = 30.0 if tabled(scene) else np.inf
     rows = [state[None, :3]]
     scale = np.linalg.norm(state[:3])
-    atol = 1e-16 * np.array([scale] * 3 + [np.sqrt(mu / scale)] * 3 + [state[6]])
+    atol = 1e-16 * np.array([scale] * 3 + [np.sqrt(mu / scale)] * 3 + [max(state[6], 1.0)])
     for i, (begin, end) in enumerate(pairwise(edges)):
         inside = times[(times > begin) & (times <= end)]
         # a piece belongs to the values at its beginning: time never quite reaches the next kink

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +13,9 @@ from sailviz import frames, two_body
 from sailviz.constants import DAY, MU_SUN
 from sailviz.ephemeris import seconds_since_j2000
 from sailviz.errors import Fault, RecordingError, SceneError
+from sailviz.exchange.earth_frames import known_frame, to_gcrf
 from sailviz.exchange.small_bodies import J2000
+from sailviz.run import dates
 from sailviz.run.resample import at as resampled
 from sailviz.scene.conflicts.known_starts import element_set_of, read_states, small_body_of
 from sailviz.scene.known_starts import OemStart, PlanetStart, SmallBodyStart, TleStart
@@ -27,12 +30,14 @@ from sailviz.words import length
 
 if TYPE_CHECKING:
     from sailviz.run.arrays import Body
+    from sailviz.run.oem import Ephemeris
     from sailviz.scene.loading import Scene
 
     State = tuple[np.ndarray, np.ndarray]
     Rows = list[tuple[str, str]]
 
 HALF_AN_HOUR = 1800.0  # s between places of a planet of which its velocity is made: 1e-7 m/s
+NEIGHBOURS = 4  # rows before and after a moment that are turned for it
 SAME_INSTANT = 1e-6  # s, by which a date may lie outside a message
 
 
@@ -99,7 +104,9 @@ def message(scene: Scene, start: OemStart, body: Body, design: None) -> State:
         if found.center != body.name.upper():
             raise ValueError(f"this flight is round {found.center.capitalize()}, and the scene is round {body.name}")
         if found.frame not in OEM_FRAMES:
-            raise ValueError(f"the frame {found.frame} is not known here; known: {', '.join(OEM_FRAMES)}")
+            known_frame(found.frame)
+            if scene.body != "earth":
+                raise ValueError(f"{found.frame} is a frame of the Earth")
         if found.frame in ("MOD", "TEME", "TOD") and scene.body != "earth":
             raise ValueError(f"{found.frame} is a frame of the Earth")
         seconds = float((_epoch(scene) - found.utc) / np.timedelta64(1, "ns")) * 1e-9
@@ -112,6 +119,8 @@ def message(scene: Scene, start: OemStart, body: Body, design: None) -> State:
         gap = next((gap for gap in found.without_data if gap[0] < seconds < gap[1]), None)
         if gap is not None:
             raise ValueError(f"at this date, between {gap[0]:g} and {gap[1]:g} s after its first row, it has no data")
+        if found.frame not in OEM_FRAMES:
+            found = _in_gcrf(found, seconds)
     turn = to_scene(scene, OEM_FRAMES[found.frame])
     if len(found.time) == 1:
         return turn @ found.position[0], turn @ found.velocity[0]
@@ -120,6 +129,17 @@ def message(scene: Scene, start: OemStart, body: Body, design: None) -> State:
     position = resampled(when, "position_m", found.time, found.position, siblings)[0]
     velocity = resampled(when, "velocity_m_s", found.time, found.velocity)[0]
     return turn @ position, turn @ velocity
+
+
+def _in_gcrf(found: Ephemeris, seconds: float) -> Ephemeris:
+    """The rows about a moment, s after the first one, of a message in a frame that turns with the Earth, in GCRF by
+    ERFA. ValueError and ModuleNotFoundError where the extra `frames`, or the Earth's orientation, is lacking."""
+    row = int(np.searchsorted(found.time, seconds))
+    near = slice(max(row - NEIGHBOURS, 0), row + NEIGHBOURS)
+    time = found.time[near]
+    instants = dates.instant_of(found.epoch, found.time_system) + np.round(time * 1e9).astype(np.int64)
+    position, velocity = to_gcrf(found.frame, instants, found.position[near], found.velocity[near])
+    return replace(found, frame="GCRF", time=time, position=position, velocity=velocity, gaps=())
 
 
 def planet(scene: Scene, start: PlanetStart, body: Body, design: None) -> State:

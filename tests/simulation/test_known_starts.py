@@ -10,6 +10,7 @@ import pytest
 
 import sailviz
 from sailviz import elements, frames
+from sailviz.calendar import tai
 from sailviz.constants import AU, MU_EARTH, MU_SUN
 from sailviz.errors import SceneError
 from sailviz.run.oem import read_oem
@@ -144,7 +145,9 @@ def test_a_message_is_read_between_its_rows_and_across_time_systems(folder):
     ("oem", "start", "more", "words"),
     [
         ({"center": "MARS"}, {}, {}, "this flight is round Mars, and the scene is round Earth"),
-        ({"frame": "ITRF"}, {}, {}, "the frame ITRF is not known here"),
+        ({"frame": "SELENA"}, {}, {}, "the frame SELENA is not known; known: GCRF"),
+        ({"frame": "RTN"}, {}, {}, "the frame RTN goes along with an orbit"),
+        ({"frame": "ITRF", "center": "SUN"}, {}, {"body": "sun"}, "ITRF is a frame of the Earth"),
         ({}, {"at": "2031-04-01T13:00:00"}, {}, "reaches from 2031-04-01T12:00:00.000 to 2031-04-01T12:02:00.000 UTC"),
         ({}, {"at": "2031-04-01T12:00:30"}, {"epoch": "2031-04-01T12:00:00"}, "leave one of them out"),
         ({"center": "SUN", "frame": "TEME"}, {}, {"body": "sun"}, "TEME is a frame of the Earth"),
@@ -154,6 +157,57 @@ def test_messages_that_do_not_fit(folder, oem, start, more, words):
     _oem(folder, **oem)
     found = _faults(_scene({"kind": "oem", "file": "a.oem", **start}) | more)
     assert any(words in what for _, what in found), found
+
+
+ORIENTED = """CCSDS_OPM_VERS = 2.0
+OBJECT_NAME = X
+OBJECT_ID = X
+CENTER_NAME = EARTH
+REF_FRAME = ITRF2014
+TIME_SYSTEM = UTC
+EPOCH = 2025-04-01T12:00:00
+X = 4000.123 [km]
+Y = -3500.456 [km]
+Z = 4700.789 [km]
+X_DOT = 3.1 [km/s]
+Y_DOT = 6.2 [km/s]
+Z_DOT = 1.7 [km/s]
+"""
+
+
+def test_a_state_on_the_turning_earth_starts_where_it_is_among_the_stars(folder, monkeypatch):
+    """By the worked row of tests/exchange/test_earth_frames.py, in a message of one state and in one of rows."""
+    pytest.importorskip("erfa")
+    from sailviz.exchange import earth_frames
+
+    days = np.array([tai(f"2025-04-0{day}T00:00:00", "UTC") for day in (1, 2)])
+    arcsecond = np.pi / 180 / 3600
+    pole = (np.full(2, angle * arcsecond) for angle in (0.0123, 0.4321))
+    orientation = earth_frames.EarthOrientation(days, *pole, np.full(2, 0.0388 - 37.0))
+    monkeypatch.setattr(earth_frames, "shipped_orientation", lambda: orientation)
+    (folder / "a.opm").write_text(ORIENTED)
+    row = " 4000.123 -3500.456 4700.789 3.1 6.2 1.7\n"
+    body = "".join(f"2025-04-01T{time}{row}" for time in ("11:58:00", "12:00:00", "12:02:00"))
+    (folder / "a.oem").write_text(OEM.format(frame="ITRF", center="EARTH", system="UTC") + body)
+    for name, at in (("a.opm", {}), ("a.oem", {"at": "2025-04-01T12:00:00"})):
+        planned = plan(sailviz.load_scene(_scene({"kind": "oem", "file": name, **at}, frame="icrf")))
+        assert planned.position / 1e3 == pytest.approx((4547.987116223, -2770.120385292, 4689.759022300), abs=2e-9)
+        assert planned.velocity / 1e3 == pytest.approx((2.208272588443, 6.967260538783, 1.694298263300), abs=2e-12)
+
+
+def test_the_extra_that_a_frame_needs_is_named(folder, monkeypatch):
+    pytest.importorskip("erfa")
+    from sailviz.exchange import earth_frames
+
+    (folder / "a.opm").write_text(ORIENTED)
+    start = _scene({"kind": "oem", "file": "a.opm"})
+    monkeypatch.setattr(earth_frames, "shipped_orientation", lambda: None)
+    ((where, what),) = _faults(start)
+    assert where == "start.file"
+    assert 'pip install "sailviz[ephemeris]"' in what
+    monkeypatch.setitem(sys.modules, "erfa", None)
+    ((_, what),) = _faults(start)
+    assert 'pip install "sailviz[frames]"' in what
 
 
 def test_a_message_of_nothing_is_told_when_the_scene_is_read(folder):

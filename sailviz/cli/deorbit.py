@@ -13,7 +13,7 @@ import click
 
 from sailviz.cli.numbers import Number
 from sailviz.cli.outputs import file_at
-from sailviz.cli.shared import BAD_INPUT, collecting_failures, progress_bar, say_if_compiling, tell
+from sailviz.cli.shared import BAD_INPUT, INTERRUPTED, collecting_failures, progress_bar, say_if_compiling, tell
 from sailviz.constants import YEAR
 from sailviz.deorbits.question import Question, scene_text, spreads, sweep_text
 from sailviz.files import write_text, writing
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 SSO = "sso"
 WORDS = {"p5": "5 %", "median": "median", "p95": "95 %"}
+FEW = 20  # flights below which nothing is said of one in twenty
+OF_FEW = {"min": "least", "median": "median", "max": "largest"}
 
 
 @click.command()
@@ -124,6 +126,9 @@ def deorbit(
                 click.echo(f"{first.time / YEAR:.6g}")
         else:
             click.echo("\n".join(words(found)))
+        if found.interrupted:
+            tell("Interrupted.")
+            failures.worst(INTERRUPTED)
         if files:
             write_text(files[0], scene, "scene")
             write_text(files[1], sweep_text(asked, files[0].name, draws or 200, seed), "sweep")
@@ -156,10 +161,12 @@ def words(found: Answer) -> Iterator[str]:
 def _drawn(found: Answer) -> Iterator[str]:
     draws = found.draws
     assert draws is not None
+    if draws.flights + draws.failed < draws.asked:
+        yield f"Interrupted: {draws.flights + draws.failed:,} of {draws.asked:,} flights have flown; of these:"
     if draws.numbers:
         told = [
             f"{word} {'at least ' if draws.numbers[key].at_least else ''}{draws.numbers[key].value:.4g} yr"
-            for key, word in WORDS.items()
+            for key, word in (WORDS if draws.flights >= FEW else OF_FEW).items()
         ]
         yield f"Of {draws.flights:,} flights: {', '.join(told)}; {draws.up:,} were still up when their time was over."
     for limit, kept, late, open_ in draws.within:
@@ -185,6 +192,7 @@ def summary(found: Answer) -> dict[str, Any]:
         draws = found.draws
         told["draws"] = {
             "flights": draws.flights,
+            "asked": draws.asked,
             "still_up": draws.up,
             "failed": draws.failed,
             "years": {key: number.value for key, number in draws.numbers.items()},

@@ -24,6 +24,8 @@ RULES = (
 NOT_COVERED = (
     "Not computed: break-up and casualty risk on the ground, the risk of collision on the way down, failures of the "
     "deployment, outgassing and passivation.",
+    "One flight says nothing of how likely it is: ESA and ISO 24113 ask for a success of 90 % and more, which is that "
+    "of the device and of the craft as well; the failure case is the flight without the device.",
     "This is no certificate: authorities may ask for DAS, DRAMA or STELA, and for the standard ISO 27852 on lifetimes.",
 )
 
@@ -49,7 +51,8 @@ class Descent:
     def verdict(self, limit: float) -> str:
         """Whether a limit, s, is kept."""
         if self.down:
-            return "kept" if self.time <= limit else "not kept"
+            margin = duration(abs(limit - self.time))
+            return f"kept, with {margin} to spare" if self.time <= limit else f"not kept, by {margin}"
         return "not kept" if self.time >= limit else f"open: only {duration(self.time)} were flown"
 
 

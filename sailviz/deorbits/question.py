@@ -13,6 +13,7 @@ RE_ENTRY = "re-entry"
 RE_ENTRY_KM = 120
 AIR_SPREAD, PLASMA_SPREAD = 0.15, 0.5  # one sigma of the logarithm: of the density of NRLMSIS and of that of IRI
 QUIET, ACTIVE = 70, 190  # sfu, between which the Sun of a drawn flight stays; the ionosphere table ends at 193
+DRAWN_ROWS, DRAWN_TOLERANCE = 40, 1e-7  # of a drawn flight, whose end alone is told: it errs by 0.1 % of the time
 TROPICAL_YEAR = 365.2422 * 86_400.0  # s in which the mean Sun goes round
 
 
@@ -108,10 +109,18 @@ def sweep_text(question: Question, scene: str, draws: int, seed: int = 0) -> str
         f"draws = {draws}",
         f"seed = {seed}",
         f'report = ["time_yr@{RE_ENTRY}"]',
+        "",
+        "[set]",
+        *(f"{key} = {value:g}" for key, value in drawn_values().items()),
     ]
     for key, distribution in spreads(q).items():
         lines += ["", "[[vary]]", f"key = {_text(key)}", f"distribution = {_text(distribution)}"]
     return "\n".join(lines) + "\n"
+
+
+def drawn_values() -> dict[str, float]:
+    """Key of the scene -> what drawn flights have in its place, so that many of them take minutes and not hours."""
+    return {"propagation.outputs": DRAWN_ROWS, "propagation.tolerance": DRAWN_TOLERANCE}
 
 
 def spreads(question: Question) -> dict[str, str]:

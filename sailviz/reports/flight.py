@@ -25,9 +25,15 @@ from sailviz.run.arrays import Run
 from sailviz.scene import Scene, load_scene
 from sailviz.scene.show import resolved_lines
 from sailviz.simulation.identity import identity_of
+from sailviz.simulation.parameters_in_words import parameters_in_words
 from sailviz.version import __version__
 from sailviz.words import duration, length
 
+ASSUMED = (
+    "The drag area and its coefficient, where they are given as numbers, are means over how the craft tumbles and hold "
+    "for the whole flight. Densities are those of the models named here, whose own error is about 15 % (one sigma) for "
+    "the air; the Sun's activity changes a lifetime from 600 km by a factor of two to three.",
+)
 PUSHES = ((1e-3, "mm/s²"), (1e-6, "µm/s²"), (1e-9, "nm/s²"))
 ROUNDING = 1e-12  # below which an eccentricity or an angle in degrees is nothing
 
@@ -144,6 +150,8 @@ def _disposal(scene: Scene | None, run: Run, descent: Descent, others: bool) -> 
     elif others:
         flown, why = companions_of(scene)
     tables = [rules]
+    if scene is not None:
+        yield Section("Assumptions", ASSUMED, (Table(tuple(_assumed(scene))),))
     if flown:
         rows = [("as recorded", descent.words, *(descent.verdict(limit) for _, limit, _ in RULES))]
         rows += [(c.name, c.words, *(c.verdict(limit) for _, limit, _ in RULES)) for c in flown]
@@ -151,6 +159,24 @@ def _disposal(scene: Scene | None, run: Run, descent: Descent, others: bool) -> 
     product = _swept(scene, descent) if scene is not None else ""
     sentences = (why, product, *NOT_COVERED)
     yield Section("Disposal", tuple(filter(None, sentences)), tuple(tables))
+
+
+def _assumed(scene: Scene) -> Iterator[tuple[str, str]]:
+    """Craft, orbit, and the models of what surrounds it."""
+    for name, value in parameters_in_words(scene, None):
+        if not name.startswith("expected"):
+            yield name, value
+    area, around = scene.device.drag_area, scene.environment
+    yield "drag area", f"{area:g} m²" if isinstance(area, float) else "follows the attitude" if area else "none given"
+    if area:
+        yield "drag coefficient", f"{scene.device.drag_coefficient:g}"
+    for name, part in (("air", around.atmosphere), ("plasma", around.ionosphere)):
+        yield f"model of the {name}", "none" if part is None else str(part.kind)
+    if around.space_weather is not None:
+        yield "Sun's activity", "measured and predicted days of a file"
+    elif around.solar_flux is not None:
+        flux = around.solar_flux
+        yield "Sun's activity", f"F10.7 = {flux:g} sfu" if isinstance(flux, (int, float)) else f"{flux}"
 
 
 def _swept(scene: Scene, descent: Descent) -> str:

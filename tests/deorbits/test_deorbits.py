@@ -11,7 +11,14 @@ from click.testing import CliRunner
 from sailviz import load_scene, simulate, sweep
 from sailviz.cli import main
 from sailviz.constants import DAY, J2_EARTH, MU_EARTH, RADIUS_EARTH, YEAR
-from sailviz.deorbits.question import Question, scene_text, spreads, sun_synchronous, sweep_text
+from sailviz.deorbits.question import (
+    Question,
+    drawn_values,
+    scene_text,
+    spreads,
+    sun_synchronous,
+    sweep_text,
+)
 
 SAIL = ["--altitude", "450", "--mass", "4", "--drag-area", "8", "--epoch", "2030-01-01", "--inclination", "51.6"]
 
@@ -55,6 +62,39 @@ def test_draws_give_percentiles_in_order_and_repeat_with_their_seed():
     assert years["min"] <= years["p5"] < years["median"] < years["p95"] <= years["max"]
     assert [rule["down"] for rule in one["within"]] == [6, 6]
     assert set(one["drawn"]) == {"device.drag_coefficient", "environment.solar_flux_sfu"}
+
+
+def test_drawn_flights_err_by_a_thousandth_of_their_time_and_fly_as_the_written_sweep_says(tmp_path):
+    question = Question(mass=4.0, altitude=330e3, inclination=0.9, epoch="2030-01-01", drag_area=0.1)
+    scene = load_text(scene_text(question))
+    (whole, fast) = (simulate(scene.with_values(values)).time[-1] for values in ({}, drawn_values()))
+    assert fast == pytest.approx(whole, rel=1e-3)
+    assert fast != whole
+    (tmp_path / "down.toml").write_text(scene_text(question))
+    (tmp_path / "sweep.toml").write_text(sweep_text(question, "down.toml", 1, 3))
+    first = sweep(tmp_path / "sweep.toml", engine="serial").table["time_yr@re-entry"][0]
+    told = json.loads(
+        asked(
+            "--altitude", 330, "--inclination", math.degrees(0.9), "--mass", 4, "--drag-area", 0.1, "--epoch",
+            "2030-01-01", "--draws", 1, "--seed", 3, "--json",
+        ).stdout
+    )  # fmt: skip
+    assert told["draws"]["years"]["median"] == pytest.approx(first, rel=1e-9)
+
+
+def test_an_interruption_keeps_what_has_flown(monkeypatch):
+    def cut(scene, vary, *, path, values, **options):
+        sweep(scene, vary, draws=2, seed=0, report=options["report"], values=values, path=path, engine="serial")
+        raise KeyboardInterrupt
+
+    import sailviz.deorbits.flights as flights
+
+    monkeypatch.setattr(flights, "sweep", cut)
+    result = asked(*SAIL, "--draws", 50)
+    assert result.exit_code == 130
+    assert "Interrupted: 2 of 50 flights have flown; of these:" in result.stdout
+    assert "Of 2 flights: least" in result.stdout
+    assert "5 %" not in result.stdout.split("Of 2 flights")[1].split("\n")[0]
 
 
 def test_what_stays_up_is_told_as_not_down():

@@ -64,6 +64,8 @@ def trajectory(
     references: Curves = (),
     environment: Mapping[str, ArrayLike] | None = None,
     gaps: Missing = (),
+    light: ArrayLike | None = None,
+    star: str | None = None,
     planets: bool = True,
     accuracy: str = "Given as arrays; nothing was propagated.",
     play_duration: float | None = None,
@@ -73,7 +75,8 @@ def trajectory(
     A row whose position and velocity are all NaN holds no data: it is left out, and between its neighbours is a gap.
 
     normal : (n, 3) of a sail, away from the Sun; by default the thrust's direction, without thrust the direction away
-        from the central body. Zero where a sail is stowed, which then has no angles and must have no thrust
+        from the light, or from the central body where none is given. Zero where a sail is stowed, which then has no
+        angles and must have no thrust
     attitude : (n, 4) quaternions instead of a normal, which then is the body's z axis. scalar : where its scalar
         stands, "first" or "last"; direction : "body_to_world" or "world_to_body". Both must be said
     thrust : (n, 3) acceleration m/s2; zero rows count as switched off
@@ -85,6 +88,8 @@ def trajectory(
     mesh : what the craft looks like, drawn in the attitude: a file (STL, OBJ, GLB, PLY, 3MF), a mesh or scene of
         trimesh, or a Shape; its longest side is then the side. unit : in which it counts, "m", "cm", "mm", "in", "ft"
         or "km", unless it says so itself; front : its axis towards the Sun, "-z" by default, which leaves it as it is
+    light : where the light is that is not at the centre, for the picture and for angles, which then count from it:
+        places (n, 3) m from the central body, or one direction (3,) towards it. star : its name if not the Sun
     events : (name, time s) pairs or Events. references : name -> (k, 3) m, or References
     environment : name with unit -> (n,) numbers or truth values, or (n, 3)
     gaps : (start, end) pairs, s or dates, of spans without data, within the run and between rows: nothing is drawn or
@@ -97,11 +102,14 @@ def trajectory(
         check.size(name, size)
     check.size("tethers", tethers, whole=True)
     lines = check.lines("look_for", look_for)
-    columns = Columns(time, position, velocity, normal, attitude, thrust, mass)
+    columns = Columns(time, position, velocity, normal, attitude, thrust, mass, light)
+    if star is not None and light is None:
+        check.say("star: it is the name of a light, and none is given")
     given = checked(
         check, columns, Turned(scalar, direction), (body, mu, radius), device, GivenMesh(mesh, unit, front, side),
         environment, references, Span(epoch, events, gaps),
     )  # fmt: skip
+    shines = given.light is not None
     known_planets = planets and given.body.name == "Sun"
     setting = Setting(
         title=str(title),
@@ -115,7 +123,7 @@ def trajectory(
         rows=len(given.time),
         epoch=given.epoch,
         references=(*given.references, *(_planet_orbits(given.position, given.epoch) if known_planets else ())),
-        parameters=(("rows", f"{len(given.time):,}"),),
+        parameters=(("rows", f"{len(given.time):,}"), *([("light", str(star or "the Sun"))] if shines else [])),
         text="",
         resolved={
             "kind": "trajectory",
@@ -125,14 +133,20 @@ def trajectory(
             "device": given.device,
         }
         | ({} if given.quaternion is None else {"attitude": "given"})
-        | ({} if given.mesh is None else {"mesh": given.mesh.told()}),
+        | ({} if given.mesh is None else {"mesh": given.mesh.told()})
+        | ({"light": str(star or "Sun")} if shines else {}),
         versions={"sailviz": __version__, "python": platform.python_version(), "numpy": np.__version__},
         accuracy=f"{accuracy} {given.note[0].upper()}{given.note[1:]}." if given.note else accuracy,
         identity="",
         play_duration=None if play_duration is None else float(play_duration),
         gaps=given.gaps,
     )
-    run = _derived(given, setting, _bodies(given.body, given.epoch, given.time, planets))
+    bodies = _bodies(given.body, given.epoch, given.time, planets)
+    if given.light is not None:
+        bodies["Sun" if star is None else "light"] = given.light
+        if star is not None:
+            bodies.pop("Sun", None)
+    run = _derived(given, setting, bodies)
     return replace(run, setting=replace(setting, identity=_identity(run)))
 
 
@@ -140,11 +154,12 @@ def _derived(given: Given, setting: Setting, bodies: dict[str, np.ndarray]) -> R
     """The Run of arrays that fit together: angles, elements and frames from states, thrust and normal."""
     axes = frames.rtn(given.position, given.velocity)
     thrust = given.thrust
+    towards = axes if given.light is None else _axes_of_light(given.position - given.light, given.body)
     size = np.linalg.norm(thrust, axis=1)
-    normal = given.normal if given.normal is not None else np.where((size > 0)[:, None], thrust, axes[..., 0])
+    normal = given.normal if given.normal is not None else np.where((size > 0)[:, None], thrust, towards[..., 0])
     normal = frames.unit(normal)
     stowed: np.ndarray = ~np.any(normal, axis=1)
-    pitch, cone, clock = frames.pitch_cone_clock(axes, normal, thrust)
+    pitch, cone, clock = frames.pitch_cone_clock(towards, normal, thrust)
     axes_of_body = frames.quaternion(frames.body_axes(frames.stance(axes, normal), axes[..., 1]))
     attitude = Attitude(
         np.where(stowed, np.nan, pitch),
@@ -167,6 +182,16 @@ def _derived(given: Given, setting: Setting, bodies: dict[str, np.ndarray]) -> R
         bodies=bodies,
         events=given.events,
     )
+
+
+def _axes_of_light(line: np.ndarray, body: Body) -> np.ndarray:
+    """Axes (n, 3, 3), columns, in which angles count that are measured from a light: along lines (n, 3) from it, and
+    towards east and north of the ecliptic, as under the scene's "sun-frame"."""
+    pole = frames.EQUATOR_FROM_ECLIPTIC[:, 2] if body.name == "Earth" else np.array([0.0, 0.0, 1.0])
+    x = frames.unit(line)
+    y = np.cross(np.where(np.abs(x @ pole)[:, None] < 1.0 - 1e-12, pole, [1.0, 0.0, 0.0]), x)
+    y = frames.unit(y)
+    return np.stack([x, y, np.cross(x, y)], axis=-1)
 
 
 def _craft(given: Given, side: float | None, tethers: int | None, tether_length: float | None) -> Craft:
@@ -212,6 +237,8 @@ def _identity(run: Run) -> str:
     found = hashlib.sha256(repr((*told, run.setting.gaps) if run.setting.gaps else told).encode())
     thrust, normal = run.thrust.acceleration, run.attitude.normal
     turned = (run.attitude.quaternion,) if run.setting.resolved.get("attitude") else ()
-    for values in (run.time, run.position, run.velocity, run.mass, thrust, normal, *turned, *run.environment.values()):
+    shines = [run.bodies[name] for name in ("Sun", "light") if "light" in run.setting.resolved and name in run.bodies]
+    moved = run.time, run.position, run.velocity, run.mass, thrust, normal
+    for values in (*moved, *turned, *run.environment.values(), *shines):
         found.update(np.ascontiguousarray(values).tobytes())
     return found.hexdigest()[:16]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from sailviz import frames
+from sailviz.constants import AU
 from sailviz.run.array_checks import ArrayChecks
 from sailviz.run.arrays import Body, Event, Reference
 from sailviz.run.devices import SAILS
@@ -41,6 +42,7 @@ class Given:
     quaternion: np.ndarray | None  # (n, 4) x y z w, body to world
     mesh: SeenMesh | None
     note: str  # what is strange about the rows though it may be so
+    light: np.ndarray | None = None  # (n, 3) m from the central body; None where that shines, or where nothing was said
 
 
 class Columns(NamedTuple):
@@ -53,6 +55,7 @@ class Columns(NamedTuple):
     attitude: ArrayLike | None
     thrust: ArrayLike | None
     mass: ArrayLike | None
+    light: ArrayLike | None = None  # a direction (3,) or places (n, 3)
 
 
 class Turned(NamedTuple):
@@ -102,6 +105,7 @@ def checked(
     masses, centre = check.mass(columns.mass, rows), check.body(*body)
     kind = check.device(_suggested(columns) if device is None else device)
     seen = _seen(check, mesh)
+    shines = _light(check, columns.light, places, centre)
     acted = check.environment({} if environment is None else environment, rows)
     curves = check.references(references)
     strange = _fit_together(check, times, places, velocities, centre, moment)
@@ -114,7 +118,7 @@ def checked(
     note = "" if pushes.any() else strange  # thrust explains what gravity does not
     return Given(
         times, places, velocities, normals, pushes, masses, centre, moment, kind, acted, curves, marks, without,
-        quaternions, seen, note
+        quaternions, seen, note, shines
     )  # fmt: skip
 
 
@@ -128,7 +132,10 @@ def _with_data(
     count = len(np.ma.asarray(columns.position))
     if isinstance(environment, Mapping):
         environment = {name: _rows(values, kept, count) for name, values in environment.items()}
-    return Columns(*(_rows(values, kept, count) for values in columns)), environment
+    one = columns.light is None or np.asarray(columns.light).ndim == 1
+    light = columns.light if one else _rows(columns.light, kept, count)
+    rows = [_rows(values, kept, count) for values in columns[:-1]]
+    return Columns(*[*rows, light]), environment
 
 
 def _attitude(
@@ -144,6 +151,25 @@ def _attitude(
     elif check.good:
         normals = frames.rotation(quaternions)[..., 2]
     return normals, quaternions
+
+
+def _light(check: ArrayChecks, given: ArrayLike | None, places: np.ndarray, centre: Body) -> np.ndarray | None:
+    """Places (n, 3) m of the light, from the central body; of a direction (3,) towards it an au away."""
+    if given is None:
+        return None
+    if centre.name == "Sun":
+        check.say("light: the Sun is at the centre and shines there: leave it out, or name another body")
+        return None
+    one = np.asarray(given).shape == (3,)
+    found = check.vectors("light", np.reshape(given, (1, 3)) if one else given, 1 if one else len(places) or None)
+    if not check.good:
+        return None
+    check.no_zeros("light", found)
+    if one:
+        return np.tile(AU * frames.unit(found), (len(places), 1))
+    if (np.linalg.norm(found - places, axis=1) == 0.0).any():
+        check.say("light: the craft is where the light is")
+    return found
 
 
 def _seen(check: ArrayChecks, given: GivenMesh) -> SeenMesh | None:

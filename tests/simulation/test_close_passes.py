@@ -1,4 +1,4 @@
-"""Bodies that pull and are passed closely: what collocation and DOP853 miss there, and that the better one is chosen."""
+"""Bodies that pull and are passed closely: what collocation and DOP853 miss there, and that the better is chosen."""
 
 from __future__ import annotations
 

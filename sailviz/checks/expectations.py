@@ -287,7 +287,10 @@ def _row_at(run: Run, event: Event) -> Run:
     position, velocity = event.state[None, :3], event.state[None, 3:6]
 
     def row(part: Any) -> Any:
-        return type(part)(*(getattr(part, f.name)[nearest] for f in fields(part)))
+        if isinstance(part, dict):
+            return {name: values[nearest] for name, values in part.items()}
+        values = [getattr(part, f.name) for f in fields(part)]
+        return type(part)(*(row(value) if isinstance(value, dict) else value[nearest] for value in values))
 
     attitude: Attitude = row(run.attitude)
     thrust: Thrust = row(run.thrust)

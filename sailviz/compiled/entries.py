@@ -63,6 +63,7 @@ class Entry:
         self.py_func = function
         self.name = f"{function.__module__}.{function.__qualname__}"
         self.kernel = called(function)  # for compiled code
+        self.declared = kinds
         self.kinds = tuple(Kind(word, record) for word in kinds.split())
         numbers = [(i, kind.word) for i, kind in enumerate(self.kinds, 2) if not kind.is_array]
         self._floats = tuple(i for i, word in numbers if word == "d")

@@ -25,6 +25,7 @@ from sailviz.propulsion.devices import CALLED, ELECTRIC_SAIL, SOLAR_SAIL
 from sailviz.steering import attitude, by_light
 
 COLLOCATION, DOP853, GAUSS_JACKSON = "collocation", "dop853", "gauss-jackson"
+TURNING = "turning"  # the steps of dop853 at the size of a craft that turns, `body_steps`
 ASKED = "it was asked for"
 FEWEST_TURNS = 50  # below, other integrators are as accurate and the gain is microseconds
 LOW = 3.0  # radii of the body within which orbits decay and the forces are small beside gravity

@@ -113,6 +113,8 @@ def model(
     film: Sequence[float] = (),
     wheel: Sequence[float] = (),
     shape_air: Sequence[float] | None = None,
+    body: Sequence[float] | None = None,
+    body_control: Callback | None = None,
     user_steering: int = 0,
     user_force: int = 0,
 ) -> Model:
@@ -124,8 +126,9 @@ def model(
     sail for which a primer law steers, id and parameters. The callbacks of steering and device belong to the kinds
     CALLED; forces add up; burns : one of them burns propellant. sky : Parameters of the sky's parts by name, `sky`,
     `magnetosphere`, `by_light`, `pushed`; sky_table of `environment.sky.packed`; film : Numbers of
-    `propulsion.film_ageing`, of a film that ages or whose temperature is asked for;
-    wheel : Numbers of `propulsion.esail_wheel`, of a wheel that is a body; shape_air of `shape_air_callback.numbers`.
+    `propulsion.film_ageing`, of a film that ages or whose temperature is asked for; wheel : Numbers of
+    `propulsion.esail_wheel`, of a wheel that is a body; shape_air of `shape_air_callback.numbers`; body : of
+    `body_motion.packed`, body_control : what turns it on purpose.
     """
     parameters = np.zeros(1, PARAMETERS)
     p = parameters[0]
@@ -171,6 +174,7 @@ def model(
         "control": control,
         "edges": edges,
         "quantity": quantity,
+        "body": body_control,
     }
     for word, one in given.items():
         if one is not None:
@@ -192,6 +196,7 @@ def model(
         "control_law": control_law,
         "sky": sky_table,
         "shape_air": shape_air,
+        "body": body,
     }
     for place, rows in named.items():
         if rows is not None:

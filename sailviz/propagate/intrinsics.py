@@ -37,10 +37,11 @@ def array_at(typing, place, length):
 
 @intrinsic
 def record_at(typing, pointer, dtype):
-    """The record of a structured type at a pointer."""
+    """The record of a structured type at an integer address or a pointer."""
 
     def generate(context, builder, signature, arguments):
-        return builder.bitcast(arguments[0], context.get_value_type(signature.return_type))
+        cast = builder.inttoptr if isinstance(signature.args[0], types.Integer) else builder.bitcast
+        return cast(arguments[0], context.get_value_type(signature.return_type))
 
     return dtype.dtype(pointer, dtype), generate
 

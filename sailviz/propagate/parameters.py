@@ -62,6 +62,7 @@ class Callbacks(NamedTuple):
     device: int = 0
     control: int = 0
     edges: int = 0  # where steps have to end, see edges_callback
+    body: int = 0  # what turns a craft on purpose, see body_control
     quantity: int = 0  # what events watch beside the kinds that are built in, see quantity_callback
     forces: int = 0  # how many forces of the environment there are; Places.forces says where their addresses stand
     burns: int = 0  # 1: one of them burns propellant
@@ -81,6 +82,7 @@ class Places(NamedTuple):
     control_law: int = 0
     sky: int = 0  # places of bodies, see environment.sky
     shape_air: int = 0  # air on a shape, see shape_air_callback
+    body: int = 0  # numbers of a craft whose attitude moves, see body_motion
     end: int = 0  # length of the array
     address: int = 0  # of the array itself, which the Model keeps alive
 
@@ -121,4 +123,6 @@ PARTS: dict[str, type] = get_type_hints(Parameters)
 PARAMETERS = np.dtype([(name, layout(part)) for name, part in PARTS.items()], align=True)
 
 array_at = late("sailviz.propagate.intrinsics", "array_at")  # (address or pointer, length) -> the float64 array there
-record_at = late("sailviz.propagate.intrinsics", "record_at")  # (pointer, structured type) -> the record there
+record_at = late(
+    "sailviz.propagate.intrinsics", "record_at"
+)  # (address or pointer, structured type) -> the record there

@@ -36,7 +36,8 @@ OF_LOW_ORBIT = (
 OF_SKY = ("sun_distance", "moon_distance")  # known to sky_quantities
 OF_FILM = ("dose", "film_temperature")  # known to film_quantities
 OF_WHEEL = ("spin_rate", "modulation", "thrust_lost", "wheel_torque")  # known to wheel_callback
-QUANTITIES = (*OF_STATE, *OF_CRAFT, *OF_LOW_ORBIT, *OF_SKY, *OF_FILM, *OF_WHEEL)
+OF_BODY = ("body_rate", "nutation", "wheel_momentum")  # of a craft that turns, known to body_quantities
+QUANTITIES = (*OF_STATE, *OF_CRAFT, *OF_LOW_ORBIT, *OF_SKY, *OF_FILM, *OF_WHEEL, *OF_BODY)
 (
     TIME, RADIUS, ALTITUDE, ELEVATION, HEIGHT, LONGITUDE, SPEED, RADIAL_SPEED, TRANSVERSE_SPEED, FLIGHT_PATH_ANGLE,
     ENERGY, ANGULAR_MOMENTUM, ANGULAR_MOMENTUM_Z, MASS, SEMI_MAJOR_AXIS, ECCENTRICITY, INCLINATION, RAAN, TRUE_ANOMALY,
@@ -45,7 +46,7 @@ QUANTITIES = (*OF_STATE, *OF_CRAFT, *OF_LOW_ORBIT, *OF_SKY, *OF_FILM, *OF_WHEEL)
     SUNLIT_FRACTION, AIR_DRAG, PLASMA_DENSITY, PLASMA_FORCE, TETHER_VOLTAGE, TETHER_CURRENT, TETHER_POWER, TETHER_TILT,
     SUN_DISTANCE, MOON_DISTANCE, DOSE, FILM_TEMPERATURE,
     SPIN_RATE, MODULATION, THRUST_LOST, WHEEL_TORQUE,
-) = range(len(QUANTITIES))  # fmt: skip
+) = range(len(QUANTITIES) - len(OF_BODY))  # fmt: skip
 MAGNETOPAUSE = len(QUANTITIES)  # how far outside it the craft is, m: no quantity of a scene, but of "wind on"
 INVERSE = ("semi_major_axis", "apoapsis", "apogee_altitude")  # watched as -1 / (distance from the centre, m)
 OBLATENESS_EARTH = J2_EARTH * RADIUS_EARTH**2  # m2

@@ -2,7 +2,9 @@
 
 /state        time_s, position_m (3), velocity_m_s (3), mass_kg
 /attitude     pitch_rad, cone_rad, clock_rad, normal (3), quaternion (xyzw, body to inertial); of a stowed sail the
-              normal is 0, pitch and clock are NaN
+              normal is 0, pitch and clock are NaN. Of a craft whose attitude moves by itself also rate_rad_s (body
+              axes, 3), angular_momentum_N_m_s (inertial, 3) and, with wheels, wheels_N_m_s (body axes, 3); of a spin
+              that is averaged the quaternion has the axis right, and the turn about it by convention
 /thrust       acceleration_m_s2 (inertial, 3), acceleration_rtn_m_s2 (3), magnitude_m_s2, on (bool)
 /thrust/NAME  the same of each device of a list of them; /thrust is their sum, on where one of them is, and /attitude
               that of the first sail, or without one of the first device; the cone angle is that of the whole thrust
@@ -89,6 +91,7 @@ def tables(run: Run) -> dict[str, dict[str, np.ndarray]]:
             "clock_rad": attitude.clock,
             "normal": attitude.normal,
             "quaternion": attitude.quaternion,
+            **attitude.motion,
         },
         "/thrust": thrust_table(thrust),
         **{thrust_path(name): thrust_table(device) for name, device in run.devices.items()},

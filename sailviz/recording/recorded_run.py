@@ -28,6 +28,7 @@ LABELS = {
 }
 BODY, ORBIT = re.compile("/world/planets/([^/]+)/body"), re.compile("/world/planets/([^/]+)/orbit")
 LINE = re.compile("/world/references/([^/]+)")
+MOTION = ("rate_rad_s", "angular_momentum_N_m_s", "wheels_N_m_s")  # of a craft whose attitude moves by itself
 REACHED = "reached"  # a line that the drawing itself has added
 
 
@@ -46,7 +47,10 @@ def run_of(recording: Recording) -> Run:
         position=state["position_m"],
         velocity=state["velocity_m_s"],
         mass=state["mass_kg"],
-        attitude=Attitude(*(attitude[name] for name in ("pitch_rad", "cone_rad", "clock_rad", "normal", "quaternion"))),
+        attitude=Attitude(
+            *(attitude[name] for name in ("pitch_rad", "cone_rad", "clock_rad", "normal", "quaternion")),
+            motion={name: attitude[name] for name in MOTION if name in attitude},
+        ),
         thrust=thrust_from(thrust),
         elements=Elements(*(elements[name] for name in angles)),
         environment={} if acted is None else {name: acted[name] for name in acted},

@@ -181,13 +181,16 @@ class Setting:
 class Attitude:
     """pitch, cone, clock (n,) rad; normal (n, 3) inertial unit vector: the sail normal away from the Sun, the thrust
     direction of a thruster, or from tip to satellite along a tether; quaternion (n, 4) xyzw, body to inertial, body
-    z = normal. A stowed sail has the normal 0, pitch and clock NaN, and z away from the central body."""
+    z = normal. A stowed sail has the normal 0, pitch and clock NaN, and z away from the central body. motion : of a
+    craft whose attitude moves by itself, name with unit -> (n, 3): rate_rad_s of the body, along its axes;
+    angular_momentum_N_m_s, inertial; wheels_N_m_s, what wheels hold of it, along the body's axes."""
 
     pitch: np.ndarray
     cone: np.ndarray
     clock: np.ndarray
     normal: np.ndarray
     quaternion: np.ndarray
+    motion: dict[str, np.ndarray] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

@@ -45,6 +45,7 @@ def run_at(run: Run, times: np.ndarray) -> Run:
             column("clock_rad", attitude.clock),
             column("normal", attitude.normal),
             column("quaternion", attitude.quaternion),
+            {name: column(name, values) for name, values in attitude.motion.items()},
         ),
         thrust=thrust_at(run.thrust),
         devices={name: thrust_at(device) for name, device in run.devices.items()},

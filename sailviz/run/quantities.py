@@ -87,6 +87,27 @@ def _of_film(name: str, unit: float = 1.0) -> Value:
     return lambda run: unit * np.asarray(run.film.get(name, np.full(len(run), np.nan)), float)
 
 
+def _turning(name: str) -> Callable[[Run], np.ndarray]:
+    """A column (n, 3) of an attitude that moves; NaN where it does not."""
+    return lambda run: np.asarray(run.attitude.motion.get(name, np.full((len(run), 3), np.nan)), float)
+
+
+_rate, _momentum, _wheels = (_turning(name) for name in ("rate_rad_s", "angular_momentum_N_m_s", "wheels_N_m_s"))
+
+
+def _nutation(run: Run) -> np.ndarray:
+    """Angle between the normal and the angular momentum."""
+    along, across = run.attitude.normal, _momentum(run)
+    found: np.ndarray = np.arctan2(np.linalg.norm(np.cross(along, across), axis=1), np.sum(along * across, axis=1))
+    return found
+
+
+def _torque(name: str) -> Value:
+    """Size of a torque whose three columns the environment has, about the body's axes; NaN where it has none."""
+    parts = [_acted(f"{name}_{axis}_N_m") for axis in "xyz"]
+    return lambda run: np.linalg.norm([part(run) for part in parts], axis=0)
+
+
 def _mean_altitude(run: Run) -> np.ndarray:
     """Without the swing that an oblate planet gives it, where the run knows that; else of the semi-major axis. NaN on
     an open orbit, which has no mean."""
@@ -151,5 +172,10 @@ VALUES: dict[str, Value] = {
     "modulation": _acted("modulation"),
     "thrust_lost": _acted("thrust_lost"),
     "wheel_torque": _acted("wheel_torque_N_m"),
+    "body_rate": lambda run: np.linalg.norm(_rate(run), axis=1),
+    "nutation": _nutation,
+    "wheel_momentum": lambda run: np.abs(_wheels(run)).max(axis=1),  # of the wheel that holds most
+    "light_torque": _torque("light_torque"),
+    "control_torque": _torque("control_torque"),
     "saturated": _acted("saturated"),  # of an ensemble: the share of time at the largest voltage
 }

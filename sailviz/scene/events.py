@@ -9,6 +9,7 @@ from sailviz.scene.values import (
     POSITIVE,
     Acceleration,
     Angle,
+    AngularMomentum,
     AngularRate,
     Current,
     Force,
@@ -86,6 +87,9 @@ class Crossing(Section):
     modulation: Annotated[float, POSITIVE] | None = None
     thrust_lost: Annotated[float, POSITIVE] | None = None
     wheel_torque: Annotated[Torque, POSITIVE] | None = None
+    body_rate: Annotated[AngularRate, POSITIVE] | None = None
+    nutation: Annotated[Angle, HALF_A_TURN] | None = None
+    wheel_momentum: Annotated[AngularMomentum, POSITIVE] | None = None
     sense: Sense = "both"
 
     always: ClassVar[tuple[str, ...]] = ()  # said in the resolved scene where they are not given, too
@@ -99,6 +103,8 @@ class Crossing(Section):
         "thrust_voltage": "jumps at the controller's updates and crosses nothing between them: watch thrust_factor",
         "wind_pressure": "jumps whenever the wind is drawn and crosses nothing between: watch thrust_factor",
         "electrochromic_state": "jumps at known times and crosses nothing between them",
+        "light_torque": "is made of the attitude, which can be watched: watch pitch or body_rate",
+        "control_torque": "jumps where actuators reach their limits: watch wheel_momentum or body_rate",
         "saturated": "counts a controller's updates: it is no function of state and time",
     }
 
@@ -162,6 +168,7 @@ _WORDS: dict[str, Callable[[float], str]] = {
     "number_density": lambda value: f"{value:.6g} /m³",
     "current": lambda value: f"{value * 1e3:.6g} mA",
     "voltage": lambda value: f"{value:.6g} V",
+    "angular_momentum": lambda value: f"{value:.6g} N m s",
     "power": lambda value: f"{value:.6g} W",
     "temperature": lambda value: f"{value:.6g} K",
     "angular_rate": lambda value: f"{value:.6g} rad/s",

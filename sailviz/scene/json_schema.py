@@ -49,6 +49,13 @@ IN_WORDS = {  # units whose key does not say them plainly
     "per_cm3": "1/cm³",
     "kg_m3": "kg/m³",
     "g_cm3": "g/cm³",
+    "rpm": "turns a minute",
+    "torque N_m": "N m",  # of a force per length it is another unit
+    "mN_m": "mN m",
+    "uN_m": "µN m",
+    "N_m_s": "N m s",
+    "mN_m_s": "mN m s",
+    "kg_m2": "kg m²",
     "sfu": "solar flux units (1e-22 W/m²/Hz at 10.7 cm)",
     "m3_s2": "m³/s²",
     "km3_s2": "km³/s²",
@@ -192,7 +199,9 @@ def _spell_out(schema: dict[str, Any]) -> None:
         for key, (unit, factor) in zip(keys, UNITS[dimension].items(), strict=True):
             properties[key] = _of_unit(quantity, factor) | {"title": f"{title} in {unit}"}
             if said:
-                properties[key]["description"] = f"{said} In {IN_WORDS.get(unit, unit)}."
+                properties[key]["description"] = (
+                    f"{said} In {IN_WORDS.get(f'{dimension} {unit}', IN_WORDS.get(unit, unit))}."
+                )
         words = [word for option in quantity.get("anyOf", []) for word in _words(option)]
         if words:
             properties[name] = {"title": title, "enum": words}

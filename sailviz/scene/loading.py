@@ -21,6 +21,7 @@ from pydantic_core import ValidationError
 
 from sailviz.calendar import naive_utc
 from sailviz.errors import Fault, SceneError
+from sailviz.scene.attitude import Attitudes
 from sailviz.scene.body import CENTRE, CustomBody, Target
 from sailviz.scene.conflicts import beside_conflicts, conflicts
 from sailviz.scene.conflicts.known_starts import dated
@@ -43,7 +44,7 @@ from sailviz.shipped import shipped_scenes
 from sailviz.words import nearest
 
 UNSAID = {  # by table, keys without which scenes were complete before they were known
-    "": ("light", "frame"),
+    "": ("light", "frame", "attitude"),
     "start": ("frame",),
     "light": ("kind", "distance", "longitude", "obliquity", "period", "direction", "mu", "radius"),
     "environment": ("gravity_of", "shadow_of", "magnetosphere", "space_weather"),
@@ -69,6 +70,7 @@ class Scene(Section):
     start: Start
     device: Devices
     steering: Steering | None = None
+    attitude: Attitudes | None = None
     target: Target | None = None
     environment: Environment = Environment()
     light: Light | None = None

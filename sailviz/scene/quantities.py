@@ -72,6 +72,11 @@ DIMENSIONS = {
     "modulation": "none",
     "thrust_lost": "none",
     "wheel_torque": "torque",
+    "body_rate": "angular_rate",
+    "nutation": "angle",
+    "wheel_momentum": "angular_momentum",
+    "light_torque": "torque",
+    "control_torque": "torque",
 }
 
 ON_A_CIRCLE = ("raan", "true_anomaly", "clock")  # equal modulo a turn; longitude is not: it counts revolutions

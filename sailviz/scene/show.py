@@ -33,6 +33,9 @@ _SI = {
     "number_density": "1/m³",
     "mu": "m³/s²",
     "angular_rate": "rad/s",
+    "torque": "N m",
+    "angular_momentum": "N m s",
+    "inertia": "kg m²",
 }
 _WORDS = {"length": length, "time": duration, "angle": angle, "acceleration": acceleration}
 

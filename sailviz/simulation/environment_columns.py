@@ -21,15 +21,22 @@ from sailviz.simulation.lowered import Array, Columns, Place
 from sailviz.simulation.plan import Plan
 from sailviz.simulation.sky import body_places
 from sailviz.simulation.steering import steering_of
+from sailviz.simulation.turned_rows import Turned
 from sailviz.steering import attitude
 
 
-def observe(p: Plan, time: Array, states: Array, factor: Array) -> tuple[Array, Array, Array, Columns]:
+def observe(
+    p: Plan, time: Array, states: Array, factor: Array, turned: Turned | None = None
+) -> tuple[Array, Array, Array, Columns]:
     """(normal (n, 3), acceleration (n, 3) m/s2, throttle (n,), columns of the environment) of a run. time (n,) s,
-    states (7, n), factor (n,) the thrust factor of each row."""
-    normal, acceleration, throttle = dynamics.observe(time, states, factor, p.model)
+    states (7, n), factor (n,) the thrust factor of each row; turned : what a craft that turns did."""
+    states = np.ascontiguousarray(states)
+    if turned is None:
+        normal, acceleration, throttle = dynamics.observe(time, states, factor, p.model)
+    else:
+        normal, acceleration, throttle = turned.axes[..., 2].copy(), turned.acceleration, np.ones(len(time))
     columns: Columns = {}
-    if p.model.steering != attitude.USER:
+    if p.model.steering != attitude.USER and turned is None:
         columns |= steering_of(p.scene.steering).watches(p.model, time, states)
     place = Place(p.scene, p.body, epoch_of(p.scene))
     for part, record in parts_of(p.scene):

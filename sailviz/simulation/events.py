@@ -13,6 +13,7 @@ from sailviz.propagate.quantity_callback import (
     FILM_TEMPERATURE,
     INVERSE,
     MAGNETOPAUSE,
+    OF_BODY,
     OF_FILM,
     OF_WHEEL,
     QUANTITIES,
@@ -26,6 +27,7 @@ from sailviz.scene.phases import Phase, Until, end_of, until_of
 from sailviz.scene.quantities import ON_A_CIRCLE
 from sailviz.scene.sky import has_sky, magnetosphere_of
 from sailviz.simulation.device import device_of
+from sailviz.simulation.turning import events_of_turning
 
 if TYPE_CHECKING:
     from sailviz.run.arrays import Body
@@ -103,6 +105,9 @@ def watched(scene: Scene, body: Body, phase: Phase | None = None) -> tuple[tuple
             continue
         names.append(name)
         rows.append(row)
+    for name, stem, level in events_of_turning(scene):
+        names.append(name)
+        rows.append((events.QUANTITY + QUANTITIES.index(stem), level, 1, events.RECORD))
     if magnetosphere_of(scene) != "none":
         edge = events.QUANTITY + MAGNETOPAUSE
         names += ["wind on", "wind off"]
@@ -141,6 +146,8 @@ def quantities_watched(scene: Scene, device: int, phase: Phase | None = None) ->
         stems.add("modulation")
     if any(stem in OF_WHEEL for stem in stems):
         return wheel_quantities(all(stem in OF_WHEEL for stem in stems))
+    stems |= {stem for _, stem, _ in events_of_turning(scene)}
+    stems -= set(OF_BODY)  # which what turns knows by itself
     blown = magnetosphere_of(scene) != "none"
     if any(stem in OF_FILM for stem in stems):
         return film_quantities(not blown and all(stem in OF_FILM for stem in stems), has_sky(scene))

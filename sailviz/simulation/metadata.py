@@ -185,6 +185,10 @@ def planets_in_view(p: Plan, farthest: float | None = None) -> dict[str, np.ndar
 def _farthest(p: Plan) -> float:
     """Largest distance from the centre, m, from a coarse run ahead: a millisecond, and the same for blocks of any
     size. What would take long is told by its beginning."""
+    if p.turning is not None:  # whose turns would take the steps: how far the orbit of its start goes
+        orbit = orbital.elements(p.position, p.velocity, p.body.mu)
+        far = float(orbit.semi_major_axis * (1 + orbit.eccentricity))
+        return max(far, float(np.linalg.norm(p.position))) if np.isfinite(far) else float(np.linalg.norm(p.position))
     times = np.linspace(0.0, p.scene.propagation.duration, 256)
     out = np.empty((6, len(times)))
     method, state = INTEGRATORS[p.choice.integrator], begun(p)

@@ -14,7 +14,7 @@ import numpy as np
 from sailviz.errors import Fault, SceneError
 from sailviz.propagate import dop853, dynamics
 from sailviz.propagate.callbacks import user_address
-from sailviz.propagate.choice import DOP853, Choice, choose
+from sailviz.propagate.choice import DOP853, TURNING, Choice, choose
 from sailviz.propagate.events import Watch, watch
 from sailviz.propagate.voltage_callback import R_REF, U_REF, WANTED, voltage_callback
 from sailviz.run.arrays import Body
@@ -41,6 +41,7 @@ from sailviz.simulation.identity import identity_of
 from sailviz.simulation.sky import SceneSky, blown_by_air, pushed_by_shape, sky_of, under_sky
 from sailviz.simulation.start import design_of, held_radius, initial_state
 from sailviz.simulation.steering import steering_of
+from sailviz.simulation.turning import TurningPlan, begun_turning, moves, nobody_follows, turning_numbers, turning_of
 from sailviz.simulation.wheel import refuse_saturated, spins, wheel_numbers, wheel_of
 
 
@@ -78,6 +79,7 @@ class Plan:
     sky: SceneSky | None  # None where only the central body and its own light matter
     beside: list[BesideDevice]  # what pushes beside the first device
     keep: tuple[object, ...]  # compiled user functions must live as long as the plan
+    turning: TurningPlan | None  # of a craft whose attitude has a motion of its own
     identity: str
     begin: float  # s
     limit: float  # s, at which it ends if nothing ends it before
@@ -123,7 +125,9 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         words = "a function of one's own gets the mass, which a film that ages or a wheel as a body does not carry."
         raise SceneError([Fault("device.ageing" if ages(scene) else "device.wheel", words)], scene.source)
     if steering is not None:
+        nobody_follows(scene)
         steered = LoweredSteering(attitude.USER)
+    turning = turning_of(scene, steered)
     when, times_beside = schedules(scene, steered.table)
     if phase is not None:
         times_beside = in_phase(times_beside, [phase.state_of(device).level for device in scene.beside])
@@ -147,6 +151,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         interpolation=steered.interpolation,
         table=steered.table,
         burns=any(one.burns for one in beside),
+        **turning_numbers(turning),
         quantity=quantities_watched(scene, device.kind, phase),
         wheel=wheel_numbers(scene, strength or 0.0),
         film=film_numbers(scene, strength or 0.0, 1.0 if phase is None else phase.state_of(scene.device).level),
@@ -166,14 +171,19 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         return _flight(dynamics.model(body.mu, **parts), position, velocity, when.breaks, on, times)
 
     model = dynamics.model(body.mu, **parts, **_controlled(scene, when, nominal))
+    seventh = taken.seventh if taken is not None else _seventh(scene)
+    start = np.array([*position, *velocity, seventh])
     if taken is None:
-        refuse_saturated(scene, model, np.array([*position, *velocity, _seventh(scene)]))
+        refuse_saturated(scene, model, start)
+    begun = begun_turning(scene, turning, model, sky is not None, begin, start)
+    if begun is not None:  # from here on its steering points where it stands
+        model.parameters["kinds"]["steering"] = attitude.INERTIAL
     return Plan(
         scene,
         body,
         position,
         velocity,
-        taken.seventh if taken is not None else _seventh(scene),
+        seventh,
         model,
         steered.table,
         when,
@@ -186,6 +196,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         sky,
         beside,
         keep,
+        begun,
         identity_of(whole, steering=steering, force=force, shape=shape_facts(whole)),
         begin,
         limit,
@@ -235,6 +246,8 @@ def _integrator(
 ) -> Choice:
     """Which integrator a scene gets. SceneError where the one asked for cannot do it."""
     run = scene.propagation
+    if moves(scene):
+        return Choice(TURNING, "position and attitude move together")
     shaped = isinstance(scene.device, SolarSail) and scene.device.shape is not None
     if shaped and run.integrator == "auto":
         return Choice(DOP853, "the force of a shape, read from a table, has kinks")

@@ -17,13 +17,16 @@ from sailviz.propagate.patience import Patience
 from sailviz.propulsion.devices import CALLED, THRUSTER
 from sailviz.run.arrays import Attitude, Event, Run, Setting, Thrust
 from sailviz.run.devices import SAILS
+from sailviz.scene.attitude import PrescribedAttitude
 from sailviz.scene.film import ages
 from sailviz.simulation.beside import observed_devices, sum_of, thrust_of
 from sailviz.simulation.environment_columns import axes_of_light, observe, rolled, torques_of_light, voltages
 from sailviz.simulation.film import film_columns
 from sailviz.simulation.integration import INTEGRATORS
+from sailviz.simulation.lowered import Columns
 from sailviz.simulation.no_progress import too_many, too_short, too_slow
 from sailviz.simulation.plan import Plan
+from sailviz.simulation.turned_rows import torque_needed, tumbled_once, turned_rows
 from sailviz.simulation.wheel import spins, wheel_columns
 
 FAILURES: dict[int, Callable[[Plan, Any, Patience], str]] = {
@@ -50,7 +53,7 @@ class Filled:
     """Rows that the propagator has filled."""
 
     times: np.ndarray  # (n,) s
-    states: np.ndarray  # (7, n)
+    states: np.ndarray  # (7, n); of a craft that turns the whole of its state
     events: list[Event]
     status: int  # of `propagate.stepping`
 
@@ -100,6 +103,7 @@ def fill(
     run = p.scene.propagation
     moments = np.unique(np.concatenate([times, [time for time, _ in switches]])) if switches else times
     components = 7 if p.model.device in (THRUSTER, CALLED) or any(one.burns for one in p.beside) else 6
+    components = components if p.turning is None else 7 + len(p.turning.motion)
     out = np.empty((components, len(moments)))
     piece = max(1, min(len(moments), output_rows // 50))  # often enough to show progress and to hear Ctrl-C
     found: list[Event] = []
@@ -121,10 +125,11 @@ def fill(
                 run.largest_step or np.inf,
                 patience,
             )
-            found += [
+            drained = [
                 Event("impact" if index < 0 else p.names[index], time, y)
                 for index, time, y in stepping.drain_events(state)
             ]
+            found += drained if p.turning is None else tumbled_once(state, drained)
             if status == stepping.EVENTS_FULL and patience.time_is_up():
                 status = stepping.TIME_IS_UP
             if status != stepping.EVENTS_FULL:
@@ -138,11 +143,11 @@ def fill(
         if status != stepping.DONE:
             break
     moments, out = moments[:filled], out[:, :filled]
-    states = out if components == 7 else np.vstack([out, np.full((1, filled), p.seventh)])
+    states = out if components >= 7 else np.vstack([out, np.full((1, filled), p.seventh)])
     for time, word in switches:
         at = np.searchsorted(moments, time)
         if at < filled:
-            found.append(Event(word, time, states[:, at].copy()))
+            found.append(Event(word, time, states[:7, at].copy()))
     found.sort(key=lambda event: event.time)
     wanted = np.isin(moments, times)
     return Filled(moments[wanted], states[:, wanted], found, status)
@@ -153,7 +158,8 @@ def observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, fi
     interval = np.searchsorted(p.schedule.breaks, time, side="right") - 1
     factor = np.where(time < off_time, p.schedule.factors[interval], 0.0)
     states = np.ascontiguousarray(states)
-    normal, acceleration, throttle, columns = observe(p, time, states, factor)
+    turned = None if p.turning is None else turned_rows(p, p.turning, time, states, factor)
+    normal, acceleration, throttle, columns = observe(p, time, states[:7], factor, turned)
     position, velocity = states[:3].T.copy(), states[3:6].T.copy()
     axes = frames.rtn(position, velocity)
     on = (factor * throttle != 0) & (p.model.device != dynamics.NO_DEVICE)
@@ -164,10 +170,12 @@ def observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, fi
         on = on | np.any([each.on for each in devices.values()], axis=0)
     by_light = axes_of_light(p, time, states, normal)
     pitch, cone, clock = frames.pitch_cone_clock(axes if by_light is None else by_light, normal, acceleration)
-    body = rolled(p, frames.body_axes(frames.stance(axes, normal), axes[..., 1]))
+    body = rolled(p, frames.body_axes(frames.stance(axes, normal), axes[..., 1])) if turned is None else turned.axes
     turn = frames.quaternion(body)
     stowed = ~np.any(normal, axis=1) if setting.craft.kind in SAILS else np.zeros(len(normal), bool)
     attitude = Attitude(np.where(stowed, np.nan, pitch), cone, np.where(stowed, np.nan, clock), normal, turn)
+    if turned is not None:
+        attitude = replace(attitude, motion=turned.motion)
     thrust = thrust_of(acceleration, axes, on)
     environment = {}
     if len(p.schedule.breaks) > 1 or p.scene.device.active is not None or p.scene.phase:
@@ -175,8 +183,12 @@ def observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, fi
     environment |= {name: values[interval] for name, values in p.schedule.histories.items()}
     if p.schedule.law is not None:
         environment["thrust_voltage_V"] = voltages(p.model)[interval]
-    environment |= wheel_columns(p.scene, p.model, time, states, factor)
-    environment |= columns | torques_of_light(p, time, states, factor * throttle, body)
+    environment |= wheel_columns(p.scene, p.model, time, states[:7], factor)
+    environment |= columns | (
+        torques_of_light(p, time, states, factor * throttle, body) if turned is None else turned.columns
+    )
+    if isinstance(p.scene.attitude, PrescribedAttitude):
+        environment |= _needed(p, time, states, acceleration, environment)
     return Run(
         setting,
         first,
@@ -190,5 +202,19 @@ def observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, fi
         environment,
         {},
         devices=devices,
-        film=film_columns(p.scene, p.model, time, states, factor),
+        film=film_columns(p.scene, p.model, time, np.ascontiguousarray(states[:7]), factor),
     )
+
+
+def _needed(p: Plan, time: np.ndarray, states: np.ndarray, push: np.ndarray, environment: Columns) -> Columns:
+    """What holding the prescribed attitude takes, in each row."""
+
+    def axes_at(times: np.ndarray, there: np.ndarray) -> np.ndarray:
+        one = np.ones(len(times))
+        normal = dynamics.observe(np.ascontiguousarray(times), np.ascontiguousarray(there), one, p.model)[0]
+        axes = frames.rtn(there[:3].T, there[3:6].T)
+        return rolled(p, frames.body_axes(frames.stance(axes, normal), axes[..., 1]))
+
+    light = [environment.get(f"light_torque_{axis}_N_m") for axis in "xyz"]
+    known = [torque for torque in light if torque is not None]
+    return torque_needed(p, time, states, axes_at, push, np.stack(known, -1) if known else None)

@@ -125,7 +125,7 @@ class _Held:
 def _built(said: str, file: Path | None, stamp: int, held: _Held) -> SailShape:
     section = held.device.shape
     assert section is not None
-    own = _surface(held.device)
+    own = surface_of_film(held.device)
     if isinstance(section, FileShape):
         assert file is not None
         shape = of_file(file, section.unit, section.front, own, section.parts)
@@ -197,7 +197,7 @@ def _bus(section: Bus) -> Part:
     return structures.bus(section.size, section.centre, surface_named(section.film, "same", True).front)
 
 
-def _surface(device: SolarSail) -> Surface:
+def surface_of_film(device: SolarSail) -> Surface:
     """Both sides of the film. ShapeError for a black back of a film that does not say how it radiates."""
     given, back = device.film, device.back
     if isinstance(given, str):

@@ -101,7 +101,20 @@ def test_a_quantity_with_words_takes_each_of_them_without_a_unit_and_numbers_wit
 
 
 MANY = ("length", "time", "angle", "speed", "acceleration", "mass", "area", "voltage", "pressure", "force")
-OTHERS = ("wire", "force_per_length", "ion_mass")  # whose units end as those of other dimensions
+OTHERS = (
+    "wire",
+    "force_per_length",
+    "ion_mass",
+    "inertia",
+    "rates",
+    "frequency",
+    "torque",
+    "storage",
+    "control_torque",
+    "inertia",
+    "rates",
+    "frequency",
+)  # whose units end as those of other dimensions
 
 
 def in_other_units(table):

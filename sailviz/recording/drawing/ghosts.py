@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from sailviz.frames import body_axes, quaternion
+from sailviz.frames import body_axes, quaternion, rotation
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.log import Picture, f4
+from sailviz.recording.drawing.near import is_given
 from sailviz.recording.drawing.samples import TURNS
 from sailviz.recording.drawing.story import Story
 from sailviz.shapes import sails
@@ -51,6 +52,8 @@ def log_ghosts(picture: Picture, story: Story, size: float) -> None:
     if len(rows) == 0 or not (story.craft.facing or story.craft.slanted):
         return
     place, axes = story.position[rows], body_axes(story.normal[rows], story.samples.axes[rows][..., 1])
+    if is_given(story.samples):
+        axes = rotation(story.samples.run.attitude.quaternion[rows])
     gaps = np.linalg.norm(np.diff(place, axis=0), axis=1)
     room = float(np.median(gaps)) if len(gaps) else size
     small = min(HALF * size, (APART if story.craft.slanted else 2 * APART) * room)

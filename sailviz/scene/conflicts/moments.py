@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING
 
 from sailviz.calendar import LONGEST, OUT_OF_REACH, DateError, in_reach
 from sailviz.constants import YEAR
+from sailviz.scene.attitude import Moving
 from sailviz.scene.conflicts.answers import Faults
+from sailviz.scene.conflicts.attitude import BELONGS, OF_BODY
 from sailviz.scene.conflicts.craft import has_surface
 from sailviz.scene.conflicts.ensembles import placed_ensembles
 from sailviz.scene.conflicts.records import device_of, ionosphere_of
@@ -142,6 +144,8 @@ def expected_of_devices(scene: Scene) -> Faults:
 def expected_moments(scene: Scene) -> Faults:
     """Expectations are of moments that the run can meet, and of a mass that is known."""
     found, happens = [], {item.called for item in scene.event} | COME_WITH_DEVICES
+    if isinstance(scene.attitude, Moving):
+        happens |= {"tumbling", "Sun angle", "wheels saturated"}
     if scene.place is not None:
         happens |= {f"{device.name} {word}" for device in scene.devices for word in ("on", "off")}
     happens |= {end_of(phase.name) for phase in scene.phase[:-1]}
@@ -160,9 +164,10 @@ def expected_moments(scene: Scene) -> Faults:
 LACKING: tuple[tuple[tuple[str, ...], Callable[[Scene], bool], str], ...] = (
     (OVER_THE_SURFACE, lambda scene: not has_surface(scene), "the body has no radius to measure an altitude from"),
     (("mass",), lambda scene: scene.device.mass is None, "the device gives no mass"),
+    (OF_BODY, lambda scene: not isinstance(scene.attitude, Moving), BELONGS),
     (
         OF_A_DEVICE,
-        lambda scene: isinstance(scene.device, NoDevice),
+        lambda scene: isinstance(scene.device, NoDevice) and not isinstance(scene.attitude, Moving),
         "nothing is steered and nothing pushes: the device is none",
     ),
     (OF_A_BRAKE, lambda scene: not device_of(scene).tether, "only a plasma brake has it"),

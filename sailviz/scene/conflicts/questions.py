@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from sailviz.scene.conflicts import craft, departures, hybrids, limits, low_orbit, moments, named_files
+from sailviz.scene.conflicts import attitude, craft, departures, hybrids, limits, low_orbit, moments, named_files
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.approximations import approximations
 from sailviz.scene.conflicts.ensembles import ensembles
@@ -39,6 +39,7 @@ QUESTIONS = (
     craft.sail_with_a_shape,
     film_of_the_sail,
     wheel_of_the_sail,
+    attitude.turning,
     moments.epoch,
     low_orbit.known_of_the_earth,
     low_orbit.tether,
@@ -57,6 +58,7 @@ QUESTIONS = (
     craft.steepest_pitch,
     moments.events,
     moments.expected_moments,
+    attitude.expected_of_turning,
 )
 
 

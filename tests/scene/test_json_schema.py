@@ -111,9 +111,6 @@ OTHERS = (
     "torque",
     "storage",
     "control_torque",
-    "inertia",
-    "rates",
-    "frequency",
 )  # whose units end as those of other dimensions
 
 

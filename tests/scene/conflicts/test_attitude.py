@@ -22,7 +22,7 @@ SAIL = {
     "attitude": {"kind": "free", "inertia_kg_m2": [60, 62, 115]},
     "propagation": {"duration_h": 1},
 }
-WHEELS = {"kind": "wheels", "torque_mNm": 1, "storage_mNms": 15}
+WHEELS = {"kind": "wheels", "torque_mN_m": 1, "storage_mN_m_s": 15}
 HELD = {
     "kind": "controlled",
     "inertia_kg_m2": [60, 62, 115],
@@ -94,7 +94,7 @@ def attitude(**parts):
             "phase[0]",
             "a flight in phases knows",
         ),
-        ({"expect": [{"quantity": "wheel_momentum_Nms", "at": "end", "value": 1, "within": 1}]}, "expect[0].quantity",
+        ({"expect": [{"quantity": "wheel_momentum_N_m_s", "at": "end", "value": 1, "within": 1}]}, "expect[0].quantity",
          "belongs to actuators"),
     ],
 )  # fmt: skip

@@ -57,8 +57,8 @@ def near_of(samples: Samples, sail: bool, sun: bool) -> Near:
 
 
 def is_given(samples: Samples) -> bool:
-    """Whether the craft's attitude came with the arrays, is that of a shape, or moves by itself, rolled about its normal
-    in a way of its own."""
+    """Whether the craft's attitude came with the arrays, is that of a shape, or moves by itself: rolled about its
+    normal in a way of its own."""
     setting = samples.run.setting
     given = setting.resolved.get("attitude") == "given" or bool(setting.craft.shape)
     return given or bool(samples.run.attitude.motion)

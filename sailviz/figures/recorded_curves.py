@@ -41,6 +41,13 @@ UNIT_WORDS = {  # as keys spell units -> as people do; others are the same
     "m2_s": "m²/s",
     "km2_s": "km²/s",
 }
+UNITS_OF_TURNING = {  # of torques and momenta, of which N_m is no force per length
+    "N_m": "N m",
+    "mN_m": "mN m",
+    "uN_m": "µN m",
+    "N_m_s": "N m s",
+    "mN_m_s": "mN m s",
+}
 USUAL = {  # the unit that is taken where a name comes without one, by dimension
     "time": "d",
     "length": "km",
@@ -58,6 +65,9 @@ USUAL = {  # the unit that is taken where a name comes without one, by dimension
     "specific_energy": "km2_s2",
     "specific_angular_momentum": "km2_s",
     "temperature": "K",
+    "angular_rate": "rpm",
+    "torque": "N_m",
+    "angular_momentum": "N_m_s",
     "none": "",
 }
 NAMED = {  # of stems whose words or colours are not those of their names
@@ -134,7 +144,8 @@ def curve_of(run: Run, name: str) -> Curve:
     if not np.isfinite(values).any():
         raise FigureError(f"{name} is never a number in this recording")
     words, color = named(quantity.stem, run.setting.body.name == "Sun")
-    unit = UNIT_WORDS.get(quantity.unit, quantity.unit)
+    turning = DIMENSIONS[quantity.stem] in ("torque", "angular_momentum")
+    unit = (UNITS_OF_TURNING if turning else UNIT_WORDS).get(quantity.unit, quantity.unit)
     words = f"{words} [{unit}]" if unit else words
     return Curve(name, words, color, values, quantity.turn, is_dense(quantity), quantity.stem, quantity.factor)
 

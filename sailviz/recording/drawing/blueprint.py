@@ -36,12 +36,21 @@ def blueprint(layout: Layout) -> rrb.Blueprint:
             playback_speed=layout.speed,
             play_state="playing",
             loop_mode="all",
+            time_selection=selection(layout.turn),
         ),
         rrb.SelectionPanel(state="hidden"),
         rrb.BlueprintPanel(state="hidden"),
         auto_views=False,
         auto_layout=False,
     )
+
+
+def selection(turn: tuple[float, float] | None) -> rr.encodings.AbsoluteTimeRange | None:
+    """A span of the run, s, as the time panel selects it."""
+    if turn is None:
+        return None
+    start, end = (round(1e9 * seconds) for seconds in turn)
+    return rr.encodings.AbsoluteTimeRange(min=start, max=end)
 
 
 def left(layout: Layout) -> rrb.Container:

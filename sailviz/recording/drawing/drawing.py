@@ -32,6 +32,7 @@ from sailviz.recording.drawing.lit_shape import lit_words
 from sailviz.recording.drawing.log import Index, Picture
 from sailviz.recording.drawing.low_orbit import log_low_orbit, orbit_words
 from sailviz.recording.drawing.now_line import log_now
+from sailviz.recording.drawing.one_turn import OneTurn
 from sailviz.recording.drawing.orbit_plane import shell_words
 from sailviz.recording.drawing.phases import never_words, phase_notes, rows_at_switches
 from sailviz.recording.drawing.plot_column import PlotView
@@ -40,7 +41,7 @@ from sailviz.recording.drawing.sail_close_up import log_close_up
 from sailviz.recording.drawing.samples import Frame, Samples, as_flown
 from sailviz.recording.drawing.story import Arrows, Story, reach_of
 from sailviz.recording.drawing.system_view import log_system, system_words
-from sailviz.run.arrays import Event, Run, join
+from sailviz.run.arrays import Event, Run
 from sailviz.run.filling import Points
 
 PLAY = {False: 30.0, True: 40.0}  # s that a replay takes, by whether it is a low orbit
@@ -57,6 +58,7 @@ class Drawing:
         self._stream, self._setting, self._picture = stream, setting, picture
         self._frame = Frame.of(first)
         self._picker = timelines.Picker(self._frame.rows, self._frame.most, self._frame.duration)
+        self._turn = OneTurn(self._frame if overlay is None else replace(self._frame, turns=1.0))
         self._rows: list[Run] = []
         self._numbers: list[np.ndarray] = []
         self._events: list[Event] = []
@@ -77,6 +79,7 @@ class Drawing:
         """The next rows."""
         block = self._shown(block)
         self._curves.add(block)
+        self._turn.add(block)
         picked = np.union1d(self._picker.pick(block), rows_at_switches(self._setting, block.time)).astype(int)
         if len(picked):
             self._rows.append(timelines.take(block, picked))
@@ -102,9 +105,9 @@ class Drawing:
         if not self._numbers or self._numbers[-1][-1] != last.first:
             self._rows.append(last)
             self._numbers.append(np.array([last.first]))
-        run = join(self._rows)
+        run, numbers = self._turn.among(self._rows, self._numbers)
         self._frame = as_flown(self._frame, run)
-        samples = Samples.of(run, np.concatenate(self._numbers), self._frame)
+        samples = Samples.of(run, numbers, self._frame, home=self._turn.span)
         reach = reach_of(self._setting, run) / self._frame.unit
         story = Story(samples, self._frame, self._craft, tuple(self._events), reach)
         if self._overlay is not None:
@@ -125,6 +128,7 @@ class Drawing:
             *sparse,
             *stowed_words(story.told),
             *lit_words(story.told),
+            *self._turn.words,
         ]
         text = about(self._setting, notes, steady, aside)
         self._picture.log_static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
@@ -205,6 +209,7 @@ class Drawing:
             timelines=("sim_time", "step") if setting.epoch is None else ("sim_time", "utc", "step"),
             speed=duration / (setting.play_duration or PLAY[story.frame.low]),
             rows_per_second=max(last.first, 1) / max(story.duration, 1e-9),
+            turn=self._turn.span,
         )
 
 

@@ -42,3 +42,4 @@ class Layout:
     timelines: tuple[str, ...] = ("sim_time", "step")
     speed: float = 1.0  # seconds of the run in one second of replay
     rows_per_second: float = 1.0
+    turn: tuple[float, float] | None = None  # s, one revolution to be looped by itself

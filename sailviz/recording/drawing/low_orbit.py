@@ -44,6 +44,7 @@ UNBRAKED = 0.075  # behind the arrows, or the craft, where the drag is told
 TAIL = 0.9  # rad of the orbit behind the craft that are bright
 BESIDE = 1.0004  # radii: the tail lies over the ring
 EYE, TARGET = np.array([0.105, -0.085, 0.315]), (-0.066, -0.010, 0.0)  # riding along, radii of the planet
+FARTHER = 1.3  # times as far, where the push may point anywhere
 FAR = 2.2  # distances of the start from which the globe is seen
 SEASON_MISS = -0.02  # mean of the Sun's height over the orbit from which its other side is taken
 SINKS = 1.0  # km, a descent whose colours are worth a line
@@ -76,10 +77,10 @@ def log_low_orbit(
 
 def orbit_words(story: Story) -> list[str]:
     """What the colour of the orbit means, how many turns are shown, and what the maps are."""
-    high, low = story.altitude[0] / 1e3, story.altitude.min() / 1e3
-    if high - low < SINKS and story.frame.slowed <= 1.5:
+    start, far = story.altitude[0] / 1e3, farthest_altitude(story) / 1e3
+    if abs(start - far) < SINKS and story.frame.slowed <= 1.5:
         return shell_words(story.samples.run)
-    words = f"orbit: **blue** at {high:.0f} km to **pink** at {low:.0f} km"
+    words = f"orbit: **blue** at {start:.0f} km to **pink** at {far:.0f} km"
     if story.frame.slowed > 1.5:
         turns = story.frame.turns * story.duration / story.frame.duration
         words += f"; of {turns:,.0f} turns {turns / story.frame.slowed:.0f} are shown"
@@ -87,10 +88,17 @@ def orbit_words(story: Story) -> list[str]:
 
 
 def descent_colors(story: Story, rows: np.ndarray | slice = slice(None), factor: float = 1.0) -> np.ndarray:
-    """Colours 0xRRGGBBAA (n,) by altitude, from that of the start to the lowest of the run."""
+    """Colours 0xRRGGBBAA (n,) by altitude, from that of the start to the lowest, or highest, of the run."""
     altitude = story.altitude
-    fall = max(altitude[0] - altitude.min(), 1e3)
-    return style.ramp(np.clip((altitude[0] - altitude[rows]) / fall, 0, 1), style.ALTITUDE_RAMP, factor)
+    change = farthest_altitude(story) - altitude[0]
+    change = change if abs(change) > 1e3 else -1e3
+    return style.ramp(np.clip((altitude[rows] - altitude[0]) / change, 0, 1), style.ALTITUDE_RAMP, factor)
+
+
+def farthest_altitude(story: Story) -> float:
+    """m, the lowest of a run, or the highest of one that climbs more than it sinks."""
+    low, high = float(story.altitude.min()), float(story.altitude.max())
+    return high if high - story.altitude[0] > story.altitude[0] - low else low
 
 
 def orbit_colors(story: Story, flights: Sequence[Flight]) -> tuple[np.ndarray, np.ndarray]:
@@ -295,7 +303,8 @@ def riding_along(story: Story) -> Space:
     side = 1.0
     if sun is not None:
         side = 1.0 if to_frame(samples.axes, unit(sun))[:, 2].mean() >= SEASON_MISS else -1.0
-    eye = EYE * [1.0, 1.0, side]
+    back = FARTHER if story.craft.pushes and not story.craft.tether else 1.0
+    eye, target = back * EYE * [1.0, 1.0, side], back * np.array(TARGET)
     contents = (
         "+ /world/**",
         "- /world/craft/**",
@@ -304,7 +313,8 @@ def riding_along(story: Story) -> Space:
         "- /world/night/penumbra",
         "- /world/night/sunlight/**",
     )
-    return Space(Camera(riding_name(story), "/world/rtn", tuple(eye.tolist()), TARGET, (1.0, 0.0, 0.0)), contents)
+    camera = Camera(riding_name(story), "/world/rtn", tuple(eye.tolist()), tuple(target.tolist()), (1.0, 0.0, 0.0))
+    return Space(camera, contents)
 
 
 def riding_name(story: Story) -> str:

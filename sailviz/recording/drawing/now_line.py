@@ -123,7 +123,10 @@ def drag_words(story: Story) -> list[str]:
 
 
 def light_words(story: Story) -> list[list[str]]:
-    """In sunlight or in shadow, where the run knows the Sun."""
+    """In sunlight or in shadow, where the run knows the Sun; not of a film that is pushed in the shadow too, because that
+    was left out."""
+    if story.craft.facing and "sunlit" not in story.samples.run.environment:
+        return []
     if "Sun" not in story.samples.run.bodies and "sunlit" not in story.samples.run.environment:
         return []
     return [["in sunlight" if lit else "in shadow" for lit in story.samples.lit.tolist()]]

@@ -156,8 +156,10 @@ class Samples:
         frame: Frame,
         before: ArrayLike = (-np.inf, -np.inf),
         filled: np.ndarray | None = None,
+        home: tuple[float, float] | None = None,
     ) -> Samples:
-        """before : s, times of the two rows drawn before these; filled (n,) bool, which are points between rows."""
+        """before : s, times of the two rows drawn before these; filled (n,) bool, which are points between rows; home :
+        s, a span in which all stand in their place."""
         position, velocity = run.position, run.velocity
         axes = rtn(position, velocity)
         normal_rtn, velocity_rtn = to_frame(axes, run.attitude.normal), to_frame(axes, unit(velocity))
@@ -170,6 +172,8 @@ class Samples:
             times = np.concatenate([np.asarray(before), run.time])
             close = times[1:] - frame.close < times[:-1]
             close = close[1:] & close[:-1]
+            if home is not None:
+                close |= (run.time >= home[0]) & (run.time <= home[1])
             even_position, even_velocity = slowed(run, frame)
             position = np.where(close[:, None], position, even_position)
             velocity = np.where(close[:, None], velocity, even_velocity)

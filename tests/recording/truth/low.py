@@ -16,13 +16,18 @@ START, MIDDLE, END = (100, 190, 255), (170, 140, 255), (244, 92, 150)  # of a de
 
 
 def ramp(f, rows, factor=1.0) -> np.ndarray:
-    """The colour (n, 3) of rows, from the altitude of the start to the lowest of the run; among flights its own."""
+    """The colour (n, 3) of rows, from the altitude of the start to the lowest of the run, or to the highest of one that
+    climbs more than it sinks; among flights its own."""
     if len(f.all) > 1:
         return factor * np.tile(np.array(FIRST, float), (len(rows), 1))
     from .now import heights
 
     high = heights(f)
-    share = np.clip((high[0] - high[rows]) / max(high[0] - high.min(), 1e3), 0, 1)
+    sinks, climbs = high[0] - high.min(), high.max() - high[0]
+    if climbs > max(sinks, 1e3):
+        share = np.clip((high[rows] - high[0]) / climbs, 0, 1)
+    else:
+        share = np.clip((high[0] - high[rows]) / (1e3 if climbs > sinks else max(sinks, 1e3)), 0, 1)
     stops = np.array([START, MIDDLE, END], float)
     return factor * np.stack([np.interp(share, [0, 0.5, 1], stops[:, k]) for k in range(3)], 1)
 

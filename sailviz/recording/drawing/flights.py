@@ -22,7 +22,7 @@ from sailviz.recording.drawing.log import Color, Picture
 from sailviz.recording.drawing.names import Names
 from sailviz.recording.drawing.near import axes_rtn, is_given
 from sailviz.recording.drawing.samples import Frame, Samples
-from sailviz.recording.drawing.shares import own_on
+from sailviz.recording.drawing.shares import log_shares, own_on
 from sailviz.recording.drawing.story import Story
 from sailviz.recording.drawing.trail import log_trail, trail_colors
 from sailviz.run.arrays import Run
@@ -100,6 +100,8 @@ def log_flights(picture: Picture, flights: Sequence[Flight], size: float, names:
     spans: dict[str, Span] = {}
     for flight in flights[1:]:
         log_body(picture, flight.story, f"{flight.path}/craft", size if flight.story.craft.size > 0 else 0.0)
+        if flight.story.most > 0:
+            log_shares(picture, flight.story, flight.story.arrow(), None, f"{flight.path}/craft")
         spans |= log_trail(picture, flight.story, flight.path, trail_colors(flight.color))
     for number, flight in enumerate(flights):
         story = flight.story

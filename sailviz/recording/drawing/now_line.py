@@ -123,8 +123,8 @@ def drag_words(story: Story) -> list[str]:
 
 
 def light_words(story: Story) -> list[list[str]]:
-    """In sunlight or in shadow, where the run knows the Sun; not of a film that is pushed in the shadow too, because that
-    was left out."""
+    """In sunlight or in shadow, where the run knows the Sun; not of a film that is pushed there
+    too, since shadow was left out."""
     if story.craft.facing and "sunlit" not in story.samples.run.environment:
         return []
     if "Sun" not in story.samples.run.bodies and "sunlit" not in story.samples.run.environment:

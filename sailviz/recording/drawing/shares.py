@@ -77,13 +77,17 @@ def arrows_of(story: Story, whole: np.ndarray, near: bool, longest: float) -> di
     return found
 
 
-def log_shares(picture: Picture, story: Story, names: Names, whole: np.ndarray) -> None:
-    """The arrows in the system view, with the devices' names."""
+def log_shares(
+    picture: Picture, story: Story, whole: np.ndarray, names: Names | None, top: str = "/world/craft"
+) -> None:
+    """The arrows in the system view of the craft at `top`; names : to which the devices' own are added."""
     colors = device_colors(story.samples.run)
     longest = 2 * story.arrows.least * story.reach
     for name, arrow in arrows_of(story, whole, False, longest).items():
         if np.any(arrow):
-            log_share(picture, story, f"/world/craft/shares/{word(name)}", arrow, colors[name], "share")
+            log_share(picture, story, f"{top}/shares/{word(name)}", arrow, colors[name], "share")
+            if names is None:
+                continue
             there = np.any(arrow, axis=1, keepdims=True)
             place = np.where(there, story.position + BEYOND * arrow, np.nan)
             names.add(f"/world/names/shares/{word(name)}", name, colors[name], place, RANK)

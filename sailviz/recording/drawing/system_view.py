@@ -79,8 +79,8 @@ def log_system(
     names = Names(story, MAIN_OVER_TABLE if story.setting.ensembles else MAIN)
     size = craft_size(story, bool(flights))
     log_backdrop(picture, story, names)
-    if story.most > 0 and not flights:
-        log_shares(picture, story, names, story.arrow())
+    if story.most > 0:
+        log_shares(picture, story, story.arrow(), None if flights else names)
     log_references(picture, story, found)
     log_craft(picture, story, size, names)
     log_approximations(picture, story, names)

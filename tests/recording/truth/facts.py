@@ -135,10 +135,10 @@ class Truth:
         self.normal, self.quaternion = attitude["normal"], attitude["quaternion"]
         self.pitch, self.cone, self.clock_angle = (attitude[f"{name}_rad"] for name in ("pitch", "cone", "clock"))
         self.thrust, self.on = thrust["acceleration_m_s2"], thrust["on"].astype(bool)
-        told = recording.resolved.get("device") if not top else None
+        told = recording.resolved.get("device")  # in one picture all craft have the devices of the first
         names = [device["name"] for device in told] if isinstance(told, list) else []
         self.kinds = {device["name"]: device["kind"] for device in told} if names else {}
-        self.devices = {name: recording[f"/thrust/{path_word(name)}"] for name in names}
+        self.devices = {name: recording[f"{top}/thrust/{path_word(name)}"] for name in names}
         self.elements = recording[f"{top}/elements"]
         self.environment = dict(recording[f"{top}/environment"]) if f"{top}/environment" in recording else {}
         self.film = dict(recording[f"{top}/film"]) if f"{top}/film" in recording else {}

@@ -279,6 +279,15 @@ def together_sails():
     }
 
 
+def together_devices():
+    """A sail and an engine, of which one turns its sail another way."""
+    changes = {"propagation.duration_yr": 0.4, "propagation.outputs": 31}
+    flown = {"as shipped": changes, "leaning": {**changes, "device.0.steering.pitch_deg": 30.0}}
+    return {
+        name: sailviz.simulate(sailviz.load_scene("hybrid/pole-sitter-like", values)) for name, values in flown.items()
+    }
+
+
 def together_dated():
     """Sails by date: one starts 60 days before the first and has a gap, one 40 days after it and ends later."""
     runs, days = {}, {"first": (0, 300, 37), "early bird": (-60, 250, 33), "late": (40, 380, 45)}
@@ -554,6 +563,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "several in phases": several_in_phases,
     "together sails": together_sails,
     "together dated": together_dated,
+    "together devices": together_devices,
     "together low": together_low,
 }
 TOGETHER = tuple(name for name in FLIGHTS if name.startswith("together"))

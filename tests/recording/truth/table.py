@@ -326,6 +326,9 @@ TOGETHER = (
     Claim(f"{BESIDE}/craft", f"{MOVE} {POINT}", "/flight/*/state", INERTIAL, "1/L", place_beside),
     Claim(f"{BESIDE}/craft/body", MOVE, "/flight/*/attitude", INERTIAL, "1", together.beside(craft.body_pose)),
     Claim(f"{BESIDE}/craft/push", ARROW, "/flight/*/thrust", INERTIAL, "one for all", together.beside(push.push_arrow)),
+    Claim(
+        f"{BESIDE}/craft/shares/*", ARROW, "/flight/*/thrust/*", INERTIAL, "of push", together.beside(push.share_arrow)
+    ),
     Claim(f"{BESIDE}/craft/name", POINT, "/flight/*/state", INERTIAL, "1.06/L", together.low_name),
     Claim(f"{BESIDE}/orbit", f"{LINE} {MOVE}", "/flight/*/state as an orbit", INERTIAL, "1/L", together.low_orbit),
     Claim("/world/plane/flight/*/orbit", f"{LINE} {MOVE}", "/flight/*/elements", "-", "1/L", together.plane_orbit),

@@ -212,7 +212,24 @@ class Truth:
         if not self.slowed:
             return np.ones(len(self), bool)
         near = np.concatenate([[False], np.diff(self.time) < self.period / 6])
-        return near & np.concatenate([[False], near[:-1]])
+        home = near & np.concatenate([[False], near[:-1]])
+        home[self.one_turn] = True
+        return home
+
+    @cached_property
+    def one_turn(self) -> slice:
+        """Rows of the first revolution, of more than ten, with twelve rows in it at least."""
+        period = 2 * np.pi * np.sqrt(np.maximum(self.orbit[0], 1.0) ** 3 / self.mu)
+        close = np.diff(self.time) < period[:-1] / 12
+        for first in np.flatnonzero(close):
+            last = int(np.searchsorted(self.time, self.time[first] + period[first], side="right"))
+            if (
+                last <= len(self)
+                and self.time[-1] >= self.time[first] + period[first]
+                and close[first : last - 1].all()
+            ):
+                return slice(int(first), last + 1 if close[last - 1 : last].all() else last)
+        return slice(0, 0)
 
     @cached_property
     def spin(self) -> np.ndarray:

@@ -179,7 +179,7 @@ def kepler(time, mu, position, velocity):
     return y[:, :3], y[:, 3:]
 
 
-def several_devices():
+def several_devices(pitch=35):
     """A sail, an electric sail and a thruster that fires at times, each turned its own way."""
     sail = {"kind": "solar-sail", "characteristic_acceleration_mm_s2": 0.7}
     wheel = {
@@ -202,7 +202,7 @@ def several_devices():
             "title": "several devices",
             "start": {"kind": "elements", "semi_major_axis_au": 0.9, "eccentricity": 0.1, "inclination_deg": 25},
             "device": [sail, engine, wheel],
-            "steering": {"kind": "orbital", "pitch_deg": 35, "clock_deg": 60},
+            "steering": {"kind": "orbital", "pitch_deg": pitch, "clock_deg": 60},
             "propagation": {"duration_d": 400, "outputs": 61},
         }
     )
@@ -280,12 +280,8 @@ def together_sails():
 
 
 def together_devices():
-    """A sail and an engine, of which one turns its sail another way."""
-    changes = {"propagation.duration_yr": 0.4, "propagation.outputs": 31}
-    flown = {"as shipped": changes, "leaning": {**changes, "device.0.steering.pitch_deg": 30.0}}
-    return {
-        name: sailviz.simulate(sailviz.load_scene("hybrid/pole-sitter-like", values)) for name, values in flown.items()
-    }
+    """A sail, an electric sail and a thruster, of which one turns its sail another way."""
+    return {"as it was": several_devices(), "leaning": several_devices(20)}
 
 
 def together_dated():

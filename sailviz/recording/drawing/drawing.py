@@ -124,11 +124,11 @@ class Drawing:
         notes = [
             *phase_notes(self._setting, story.frame.low),
             *notes,
+            *self._turn.words,
             *gap_words(self._setting),
             *sparse,
             *stowed_words(story.told),
             *lit_words(story.told),
-            *self._turn.words,
         ]
         text = about(self._setting, notes, steady, aside)
         self._picture.log_static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))

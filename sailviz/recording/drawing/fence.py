@@ -73,7 +73,7 @@ def standing(story: Story, row: np.ndarray, lift: np.ndarray, strength: np.ndarr
             parts.append((begun, count))
             begun = count
         elif k > 0 and row[k] == row[k - 1] + 1 and row[k - 1] in story.ways.lines:
-            line, share = (part[1:-1] for part in story.ways.lines[int(row[k - 1])])
+            line, share = (part[1:-1][::2] for part in story.ways.lines[int(row[k - 1])])  # half of what the trail has
             between = lift[k - 1] + share[:, None] * (lift[k] - lift[k - 1])
             base.append(line)
             top.append(line + between)

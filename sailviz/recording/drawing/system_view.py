@@ -14,6 +14,7 @@ import rerun as rr
 from sailviz.frames import quaternion, unit
 from sailviz.recording.contract import word
 from sailviz.recording.drawing import cameras, style
+from sailviz.recording.drawing.beside import log_beside, neighbour_of
 from sailviz.recording.drawing.cameras import Camera
 from sailviz.recording.drawing.ensemble_names import add_ensemble_names
 from sailviz.recording.drawing.fence import Fence, fence_of, fence_spans, log_fence
@@ -103,8 +104,11 @@ def log_system(
     if story.frame.sparse:
         log_ladder(picture, story)
         spans["/world/ladder"] = ALL
-    hidden = paths_of_passages(spheres)
+    there = None if flights else neighbour_of(story)
+    hidden = [*paths_of_passages(spheres), *([f"{there.path}/**"] if there is not None else [])]
     spaces = [*views_of(story, camera, hidden), *at_the_bodies(story, spheres, first_eye(camera))]
+    if there is not None:
+        spaces.insert(1, log_beside(picture, story, there))
     return spaces, spans, nominal_words(found, flights[0].name if flights else "this flight")
 
 

@@ -542,6 +542,12 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "held": scene("wind/held-displaced", propagation__outputs=61),
     "light": scene("wind/flickering-sun", **SMALL),
     "round a planet": round_a_planet,
+    "beside the Earth": scene(
+        "sun/sub-l1-real",
+        propagation__duration_d=60,
+        propagation__outputs=41,
+        environment__gravity_of=["earth"],
+    ),
     "many turns": many_turns,
     "to the Moon": to_the_moon,
     "in and out of the wind": in_and_out_of_the_wind,

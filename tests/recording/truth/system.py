@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import phases
-from .facts import planet_ellipse, unit
+from .facts import path_word, planet_ellipse, unit
 from .measure import hue, on_ring, same_angle, same_direction, same_place
 from .seen import poses, shown, some, spots, strips
 
@@ -287,3 +287,82 @@ def season(f, entity):
     sun = f.truth.sun
     same_angle(np.arctan2(pose[:, 1, 0], pose[:, 0, 0]), np.arctan2(sun[:, 1], sun[:, 0]), 0.01)
     same_direction(pose[:, :3, 2], np.broadcast_to([0.0, 0, 1], (len(pose), 3)))
+
+
+def spots_of_body(f, entity):
+    """(n, 3) where the planet is drawn beside which an entity stands."""
+    names = [e.split("/")[3] for e in f.picture.entities if e.startswith("/world/planets/") and e.endswith("/body")]
+    (name,) = (name for name in names if path_word(name) == entity.split("/")[3])
+    return np.array([spot[0] for spot in spots(f, f"/world/planets/{name}/body")])
+
+
+def near_frame(f, entity, word):
+    """A frame that goes round with the planet: x away from the Sun, z the normal of its orbit; length 1 is the flight's
+    largest distance from it."""
+    places = spots_of_body(f, entity)
+    pose = poses(f, entity)
+    same_place(pose[:, :3, 3], places)
+    size = np.linalg.norm(pose[:, :3, :3], axis=1)
+    away = np.linalg.norm(f.truth.place / f.truth.length - places, axis=1)
+    assert np.abs(size - away.max()).max() < 1e-5 * away.max()
+    same_direction(pose[:, :3, 0], places, 0.01)
+    turning = np.cross(places[:-1], places[1:])
+    same_direction(pose[1:-1, :3, 2], turning[1:], 0.05)
+
+
+def near_craft(f, entity, word):
+    """The craft where it is, in the frame of the planet beside it, called by its kind."""
+    for row in range(len(f.truth)):
+        place = f.picture.place(entity, "Points3D:positions", row)[0]
+        assert np.linalg.norm(place - f.truth.place[row] / f.truth.length) < 3e-7
+    assert f.picture.fixed(entity, "Points3D:labels") == ["Solar sail"]
+
+
+def near_way(f, entity, word):
+    """The whole way past the planet: in each row its point of that row is where the craft is."""
+    for row in some(f, 9):
+        (line,) = f.picture.line(entity, row)
+        assert len(line) == len(f.truth)
+        assert np.linalg.norm(line[row] - f.truth.place[row] / f.truth.length) < 3e-7
+
+
+def near_line(f, entity, word):
+    """From the planet to the craft."""
+    bodies = spots_of_body(f, entity)
+    for row in some(f, 9):
+        (line,) = f.picture.line(entity, row)
+        ends = [bodies[row], f.truth.place[row] / f.truth.length]
+        assert np.abs(line - ends).max() < 3e-7
+
+
+def near_body(f, entity, word):
+    """The planet where it is, named, in its colour."""
+    bodies = spots_of_body(f, entity)
+    for row in some(f, 9):
+        assert np.linalg.norm(f.picture.place(entity, "Points3D:positions", row)[0] - bodies[row]) < 3e-7
+    (name,) = f.picture.fixed(entity, "Points3D:labels")
+    assert path_word(name) == word
+    assert hue(f.picture.color(entity, "Points3D:colors")[0]) == PLANET_HUES[name]
+
+
+def near_sunlight(f, entity, word):
+    """The way of the light at the planet, yellow."""
+    bodies = spots_of_body(f, entity)
+    for row in some(f, 5):
+        _, (vector,) = f.picture.arrow(entity, row)
+        same_direction(vector, bodies[row], 0.01)
+    assert f.picture.fixed(entity, "Arrows3D:labels") == ["sunlight"]
+    assert hue(f.picture.color(entity, "Arrows3D:colors")[0]) == "yellow"
+
+
+def near_push(f, entity, word):
+    """From the craft along the thrust, half as long as the longest where it hardly pushes."""
+    push = np.linalg.norm(f.truth.thrust, axis=1)
+    sizes = []
+    for row in range(len(f.truth)):
+        (origin,), (vector,) = f.picture.arrow(entity, row)
+        assert np.linalg.norm(origin - f.truth.place[row] / f.truth.length) < 3e-7
+        same_direction(vector, f.truth.thrust[row], 0.01)
+        sizes.append(np.linalg.norm(vector))
+    expected = 0.5 + 0.5 * push / push.max()
+    assert np.abs(sizes / np.max(sizes) - expected).max() < 1e-3

@@ -392,6 +392,24 @@ def in_and_out_of_the_wind():
     )
 
 
+def beside_the_earth():
+    """A sail inside the Earth's orbit, between her and the Sun."""
+    return sailviz.simulate(
+        {
+            "title": "Beside the Earth",
+            "epoch": "2026-03-20T00:00:00",
+            "start": {
+                "kind": "cartesian",
+                "position_km": [-145961377.86608, 2481234.250222, 442.84338],
+                "velocity_km_s": [-0.96766064654, -29.3103407029, 0.00081063934],
+            },
+            "device": {"kind": "solar-sail", "film": "ideal", "characteristic_acceleration_mm_s2": 0.305972616},
+            "steering": {"kind": "sun-facing"},
+            "propagation": {"duration_d": 60, "outputs": 41},
+        }
+    )
+
+
 def many_turns():
     """A sail that goes round the Earth 36 times, in 201 rows."""
     return sailviz.simulate(
@@ -542,12 +560,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "held": scene("wind/held-displaced", propagation__outputs=61),
     "light": scene("wind/flickering-sun", **SMALL),
     "round a planet": round_a_planet,
-    "beside the Earth": scene(
-        "sun/sub-l1-real",
-        propagation__duration_d=60,
-        propagation__outputs=41,
-        environment__gravity_of=["earth"],
-    ),
+    "beside the Earth": beside_the_earth,
     "many turns": many_turns,
     "to the Moon": to_the_moon,
     "in and out of the wind": in_and_out_of_the_wind,

@@ -8,7 +8,7 @@ import numpy as np
 
 from .measure import hue, on_ring, same_direction, same_place
 from .now import braking, told
-from .seen import body, home, some, spots, texts
+from .seen import body, home, shown, some, spots, texts
 
 TAIL = 0.9  # rad
 FIRST = (150, 230, 255)  # of the first of several flights
@@ -112,11 +112,10 @@ def flight(f, entity):
 
 
 def flight_name(f, entity):
-    """Says so, ahead of the craft."""
+    """Says so, ahead of the craft, while no other name is there."""
     assert f.picture.fixed(entity, "Points3D:labels") == ["flies this way"]
-    for row in some(f, 3):
-        off = f.picture.place(entity, "Points3D:positions", row)[0] - home(f, entity)[row]
-        assert off @ f.truth.drawn_frame[row][1] > 0
+    for row, place in shown(f, entity):
+        assert (place - home(f, entity)[row]) @ f.truth.drawn_frame[row][1] > 0
 
 
 def plumb(f, entity):

@@ -14,6 +14,7 @@ ITEMS = tuple.__basicsize__
 NUMBER = HEAD  # of a float
 DATA, AXES, SHAPE, STRIDES, DTYPE, FLAGS = HEAD, HEAD + 8, HEAD + 16, HEAD + 24, HEAD + 40, HEAD + 48  # of an array
 LETTER, ORDER, SIZE = HEAD + 8, HEAD + 10, HEAD + 24  # of a dtype: its kind, its byte order, the size of an item
+WHOLE = ctypes.c_int64
 C_ORDER, ALIGNED, WRITEABLE = 0x1, 0x100, 0x400  # flags of an array
 
 
@@ -24,24 +25,41 @@ def is_as_expected() -> bool:
     if np.ndarray.__basicsize__ < FLAGS + 4 or np.dtype.__basicsize__ < SIZE + 8:
         return False
     array, number = np.zeros((3, 5)), 0.625
+    return _of_numbers(array, number) and _of_arrays(array) and _of_kinds(array)
+
+
+def _of_numbers(array: np.ndarray, number: float) -> bool:
+    """Whether a pair holds its items, and a float its number, where they are looked for."""
     pair = (array, number)
-    address, real, whole, byte = id(array), ctypes.c_double, ctypes.c_int64, ctypes.c_char
-    dtype = _read(address + DTYPE, whole)
-    return (
-        _read(id(pair) + ITEMS, whole) == address
-        and _read(id(pair) + ITEMS + 8, whole) == id(number)
-        and _read(id(number) + TYPE, whole) == id(float)
-        and _read(id(number) + NUMBER, real) == number
-        and _read(address + TYPE, whole) == id(np.ndarray)
-        and _read(address + DATA, whole) == array.ctypes.data
+    return bool(
+        _read(id(pair) + ITEMS, WHOLE) == id(array)
+        and _read(id(pair) + ITEMS + 8, WHOLE) == id(number)
+        and _read(id(number) + TYPE, WHOLE) == id(float)
+        and _read(id(number) + NUMBER, ctypes.c_double) == number
+    )
+
+
+def _of_arrays(array: np.ndarray) -> bool:
+    """Whether an array (3, 5) of floats has its data, axes, shape, strides and flags there."""
+    address = id(array)
+    return bool(
+        _read(address + TYPE, WHOLE) == id(np.ndarray)
+        and _read(address + DATA, WHOLE) == array.ctypes.data
         and _read(address + AXES, ctypes.c_int) == 2
-        and [_read(_read(address + SHAPE, whole) + 8 * i, whole) for i in range(2)] == [3, 5]
-        and [_read(_read(address + STRIDES, whole) + 8 * i, whole) for i in range(2)] == [40, 8]
-        and dtype == id(array.dtype)
-        and _read(dtype + LETTER, byte) == b"f"
-        and _read(dtype + ORDER, byte) == b"="
-        and _read(dtype + SIZE, whole) == 8
+        and [_read(_read(address + SHAPE, WHOLE) + 8 * i, WHOLE) for i in range(2)] == [3, 5]
+        and [_read(_read(address + STRIDES, WHOLE) + 8 * i, WHOLE) for i in range(2)] == [40, 8]
         and _read(address + FLAGS, ctypes.c_int) & 0x501 == C_ORDER | ALIGNED | WRITEABLE
+    )
+
+
+def _of_kinds(array: np.ndarray) -> bool:
+    """Whether an array of floats says there what its numbers are."""
+    dtype = _read(id(array) + DTYPE, WHOLE)
+    return bool(
+        dtype == id(array.dtype)
+        and _read(dtype + LETTER, ctypes.c_char) == b"f"
+        and _read(dtype + ORDER, ctypes.c_char) == b"="
+        and _read(dtype + SIZE, WHOLE) == 8
     )
 
 

@@ -90,6 +90,33 @@ def with_last_state(filled: Filled, state: Any) -> Filled:
     return replace(filled, times=np.append(filled.times, now), states=np.hstack([filled.states, end]))
 
 
+def fill_piece(p: Plan, state: Any, times: np.ndarray, out: np.ndarray, patience: Patience, found: list[Event]) -> int:
+    """Integrate over times (m,), states into out (6 or 7, m), events into `found` -> how it ended."""
+    run = p.scene.propagation
+    while True:
+        status: int = INTEGRATORS[p.choice.integrator].advance(
+            state,
+            p.model,
+            p.schedule.breaks,
+            p.schedule.factors,
+            p.watch,
+            times,
+            out,
+            p.limit,
+            run.tolerance,
+            run.largest_step or np.inf,
+            patience,
+        )
+        drained = [
+            Event("impact" if index < 0 else p.names[index], time, y) for index, time, y in stepping.drain_events(state)
+        ]
+        found += drained if p.turning is None else tumbled_once(state, drained)
+        if status != stepping.EVENTS_FULL:
+            return status
+        if patience.time_is_up():
+            return stepping.TIME_IS_UP
+
+
 def fill(
     p: Plan,
     state: Any,
@@ -111,29 +138,7 @@ def fill(
     for first in range(0, len(moments), piece):
         part = moments[first : first + piece]
         chunk = np.empty((components, len(part)))
-        while True:
-            status = INTEGRATORS[p.choice.integrator].advance(
-                state,
-                p.model,
-                p.schedule.breaks,
-                p.schedule.factors,
-                p.watch,
-                part,
-                chunk,
-                p.limit,
-                run.tolerance,
-                run.largest_step or np.inf,
-                patience,
-            )
-            drained = [
-                Event("impact" if index < 0 else p.names[index], time, y)
-                for index, time, y in stepping.drain_events(state)
-            ]
-            found += drained if p.turning is None else tumbled_once(state, drained)
-            if status == stepping.EVENTS_FULL and patience.time_is_up():
-                status = stepping.TIME_IS_UP
-            if status != stepping.EVENTS_FULL:
-                break
+        status = fill_piece(p, state, part, chunk, patience, found)
         done = stepping.rows_done(state)
         out[:, first : first + done] = chunk[:, :done]
         filled = first + done

@@ -22,7 +22,7 @@ from sailviz.checks.gtoc13.passages import on_conic
 from sailviz.checks.gtoc13.rows import Findings, States, states_of
 from sailviz.checks.gtoc13.rules import Finding
 from sailviz.checks.gtoc13.sail import Steps, unit
-from sailviz.checks.gtoc13.score import Flyby, scored
+from sailviz.checks.gtoc13.score import Flyby, scored, wheels
 from sailviz.checks.gtoc13.wrong_units import wrong_units
 from sailviz.errors import RecordingError
 from sailviz.exchange.gtoc13 import CONIC, FLYBY, SAIL, Arc, Solution, read_catalogue, read_solution
@@ -31,11 +31,13 @@ Floats = NDArray[np.float64]
 
 
 class Approach(NamedTuple):
-    """A closest approach to the star: at time s, at a distance m, in the arc that ends at a row (index)."""
+    """A closest approach to the star: at time s, at a distance m, in the arc that ends at a row (index). passed :
+    whether the craft goes away again, which it does not where the file ends."""
 
     time: float
     distance: float
     row: int
+    passed: bool = True
 
 
 @dataclass(frozen=True)
@@ -77,6 +79,10 @@ class Judgement:
             "violations": [finding.as_json() for finding in self.violations],
             "notes": [finding.as_json() for finding in self.notes],
             "flybys": [_flyby_json(flyby) for flyby in self.flybys],
+            "wheel": [
+                {"body": each.body.number, "flybys": each.flybys, "points": each.points, "sectors": list(each.sectors)}
+                for each in wheels(self.flybys)
+            ],
             "perihelia": [
                 {"time_s": each.time, "distance_au": each.distance / rules.AU, "row": each.row + 1}
                 for each in self.approaches
@@ -132,7 +138,7 @@ def judge(solution: Solution | str | Path, catalogue: str | Path | None = None) 
     ordered = _apart(approaches)
     _perihelia(ordered, found)
     flybys = judge_flybys(given, states, bodies, found)
-    first = ordered[0].time if ordered else np.inf
+    first = next((each.time for each in ordered if each.passed), np.inf)
     counted, bonus = scored(flybys, first)
     return Judgement(given, found.ordered(), found.ordered(notes=True), counted, bonus, tuple(ordered), middles)
 
@@ -261,7 +267,8 @@ def _at_joints(given: Solution, states: States) -> list[Approach]:
         if abs(given.time[row + 1] - given.time[row]) <= rules.JOINT_TIME:
             found.append(Approach(float(given.time[row]), float(np.linalg.norm(states.position[row])), int(row) + 1))
     if states.outward[n - 1] < 0 and np.linalg.norm(states.position[n - 1]) < rules.NEAREST:
-        found.append(Approach(float(given.time[n - 1]), float(np.linalg.norm(states.position[n - 1])), n - 1))
+        last = float(given.time[n - 1]), float(np.linalg.norm(states.position[n - 1])), n - 1
+        found.append(Approach(*last, passed=False))
     return found
 
 

@@ -19,7 +19,7 @@ from sailviz.checks.gtoc13.passages import body_state
 from sailviz.checks.gtoc13.rows import states_of
 from sailviz.checks.gtoc13.rules import Finding
 from sailviz.checks.gtoc13.sail import PUSH, Steps, fly, unit
-from sailviz.checks.gtoc13.score import Flyby
+from sailviz.checks.gtoc13.score import Flyby, wheels
 from sailviz.errors import RecordingError
 from sailviz.exchange.gtoc13 import CONIC, SAIL, CompetitionBody, read_catalogue
 from sailviz.run.array_checks import TrajectoryError
@@ -33,6 +33,7 @@ PHASE_OF = {CONIC: "coast", SAIL: "sail"}
 EVEN, NEAR = 1200, 40  # filled rows over the whole flight; on either side of a perihelion
 STEEPEST = 0.03  # rad about the star between two rows of a sail arc
 MOST_MARKS = 200  # violations that are marked in space
+MOST_WHEELS = 4  # bodies of which it is told where they were flown by
 RING = 361
 
 
@@ -265,4 +266,8 @@ def _look_for(found: Judgement, planets: Mapping[str, CompetitionBody]) -> list[
         small = sum(number > rules.YANDI for number in met)
         big = len([body for body in planets.values() if body.number in met])
         lines.append(f"bodies that score: planets **{big}**, small ones **{small}**")
+    best = sorted(wheels(found.flybys), key=lambda wheel: -wheel.points)
+    for wheel in best[:MOST_WHEELS]:
+        name = wheel.body.name or f"body {wheel.body.number}"
+        lines.append(f"{name}: **{wheel.points:.3g}** points, by 30° of longitude `{wheel.words}`")
     return lines

@@ -23,6 +23,28 @@ FULL_TOUR = 1.2  # all planets, Yandi and so many small bodies
 SMALL_BODIES_OF_A_TOUR = 13
 
 
+SECTORS = 12  # of the wheel of a body, 30 degrees of longitude each from the x axis on
+
+
+class Wheel(NamedTuple):
+    """Where about the star a body was flown by. points : what its flybys add, before the bonus; sectors (12,) : how
+    many of those that count lie in each 30 degrees of longitude from the x axis on."""
+
+    body: CompetitionBody
+    points: float
+    sectors: tuple[int, ...]
+
+    @property
+    def flybys(self) -> int:
+        """How many count."""
+        return sum(self.sectors)
+
+    @property
+    def words(self) -> str:
+        """A sign for each sector: a dot, or how many flybys it has."""
+        return "".join("." if not count else str(count) if count < 10 else "+" for count in self.sectors)
+
+
 class Flyby(NamedTuple):
     """A flyby as it was judged. row : its first one in the file; time s; v_inf m/s; altitude m, inf without a turn, NaN
     where the body does not bend the way; place (3,) m. counts : whether it is science and scores; quality F and
@@ -61,6 +83,22 @@ def season(place: Floats, before: Iterable[Floats]) -> float:
     sine = np.linalg.norm(np.cross(there, here), axis=1)
     theta = np.degrees(np.arctan2(sine, there @ here))
     return float(0.1 + 0.9 / (1.0 + 10.0 * np.sum(np.exp(-(theta**2) / 50.0))))
+
+
+def wheels(flybys: Iterable[Flyby]) -> tuple[Wheel, ...]:
+    """The wheel of every body that scores, in the order of their numbers."""
+    found: dict[int, list[Flyby]] = {}
+    for flyby in flybys:
+        if flyby.counts:
+            found.setdefault(flyby.body.number, []).append(flyby)
+    made = []
+    for _, some in sorted(found.items()):
+        longitude = [np.degrees(np.arctan2(flyby.place[1], flyby.place[0])) % 360.0 for flyby in some]
+        sectors = [0] * SECTORS
+        for angle in longitude:
+            sectors[int(angle * SECTORS / 360.0) % SECTORS] += 1
+        made.append(Wheel(some[0].body, sum(flyby.points for flyby in some), tuple(sectors)))
+    return tuple(made)
 
 
 def scored(flybys: Iterable[Flyby], first_perihelion: float) -> tuple[tuple[Flyby, ...], float]:

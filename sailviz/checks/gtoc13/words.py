@@ -9,7 +9,7 @@ import numpy as np
 from sailviz.checks.gtoc13 import rules
 from sailviz.checks.gtoc13.judgement import Judgement
 from sailviz.checks.gtoc13.rules import Finding
-from sailviz.checks.gtoc13.score import Flyby
+from sailviz.checks.gtoc13.score import Flyby, Wheel, wheels
 from sailviz.constants import YEAR
 from sailviz.exchange.gtoc13 import CONIC, FLYBY, SAIL
 
@@ -31,6 +31,10 @@ def in_words(found: Judgement) -> str:
     if found.flybys:
         lines += ["", *_table(("row", "year", "body", "v_inf, km/s", "altitude, radii", "F", "S", "weight", "points"),
                               [_flyby_row(flyby) for flyby in found.flybys])]  # fmt: skip
+    wheel = wheels(found.flybys)
+    if wheel:
+        lines += ["", "Flybys that count, by 30° of longitude about the star",
+                  *_table(("body", "flybys", "wheel", "points"), [_wheel_row(each) for each in wheel])]  # fmt: skip
     if found.approaches:
         nearest = min(found.approaches, key=lambda each: each.distance)
         lines += ["", f"Nearest to the star: {nearest.distance / rules.AU:.4f} au in year {nearest.time / YEAR:.3f}"]
@@ -53,6 +57,11 @@ def _flyby_row(flyby: Flyby) -> tuple[str, ...]:
         str(flyby.row + 1), f"{flyby.time / YEAR:.3f}", name, f"{flyby.v_inf / 1e3:.4f}",
         f"{radii:.3f}" if np.isfinite(radii) else "-", *counted, f"{flyby.body.weight:g}", f"{flyby.points:.6f}",
     )  # fmt: skip
+
+
+def _wheel_row(wheel: Wheel) -> tuple[str, ...]:
+    name = f"{wheel.body.number} {wheel.body.name}".strip()
+    return name, str(wheel.flybys), wheel.words, f"{wheel.points:.6f}"
 
 
 def _findings(findings: Sequence[Finding]) -> list[str]:

@@ -54,6 +54,10 @@ def test_a_legal_solution_has_its_score(catalogue):
     assert flyby.v_inf == pytest.approx(22926.8353, abs=1e-4)
     assert flyby.quality == pytest.approx(0.37142615, abs=5e-9)
     assert flyby.altitude / flyby.body.radius == pytest.approx(3.0, abs=1e-6)
+    (wheel,) = found.as_json()["wheel"]
+    assert (wheel["body"], wheel["flybys"]) == (10, 1)
+    assert wheel["points"] == pytest.approx(found.score)
+    assert wheel["sectors"].index(1) == int(np.degrees(np.arctan2(flyby.place[1], flyby.place[0])) % 360 // 30)
 
 
 def test_200_m_off_are_found_at_the_conic_and_at_the_flyby(catalogue):
@@ -231,6 +235,17 @@ def test_an_asteroid_counts_after_the_first_perihelion_only(tmp_path):
     assert after.legal, after.violations
     assert after.approaches[0].time < 60 * YEAR
     assert after.score > 0.0
+
+
+def test_a_file_that_ends_while_it_comes_closer_has_not_passed_its_perihelion(tmp_path):
+    """Within 0.05 au the end counts as near as it came, and no asteroid scores by it."""
+    end, span = (np.array([[0.03 * AU, 0.0, 0.0]]), np.array([[-9e4, 3e4, 0.0]])), 1e4
+    start = two_body.advance(*end, [-span], rules.MU)
+    states = [[0.0, 0.0, at] for at in (0.0, span)]
+    rows = [[*row, *(r[0] / 1e3), *(v[0] / 1e3), 0, 0, 0] for row, (r, v) in zip(states, (start, end), strict=True)]
+    found = judge(_written(tmp_path / "inward.txt", rows))
+    assert [each.passed for each in found.approaches] == [False]
+    assert {each.name for each in found.violations} == {"start"}
 
 
 def test_an_asteroid_does_not_bend_the_way(tmp_path):

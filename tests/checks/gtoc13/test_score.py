@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from sailviz.checks.gtoc13.passages import body_state
-from sailviz.checks.gtoc13.score import Flyby, quality, scored, season
+from sailviz.checks.gtoc13.score import Flyby, quality, scored, season, wheels
 from sailviz.exchange.gtoc13 import CompetitionBody, read_catalogue
 
 
@@ -56,3 +56,17 @@ def test_a_full_tour_has_a_bonus():
     assert scored(tour, 5.0)[1] == 1.2
     assert scored(tour, 30.0)[1] == 1.0  # the asteroids came before the perihelion
     assert scored([flyby._replace(science=False) for flyby in tour], 5.0)[0][0].points == 0.0
+
+
+def test_the_wheel_of_a_body_says_where_its_flybys_that_count_were():
+    flybys = [_flyby(1, 1.0), _flyby(1, 1.1), _flyby(1, 4.0), _flyby(2, 6.0), _flyby(1, 5.0, science=False)]
+    counted, _ = scored(flybys, 0.0)
+    one, two = wheels(counted)
+    assert (one.body.number, one.flybys, two.flybys) == (1, 3, 1)
+    assert one.words == ".11....1...."
+    wanted = [0] * 12
+    for angle in (1.0, 1.1, 4.0):
+        wanted[int(np.degrees(angle) // 30)] += 1
+    assert list(one.sectors) == wanted
+    assert two.sectors[int(np.degrees(6.0) // 30)] == 1
+    assert one.points + two.points == pytest.approx(sum(flyby.points for flyby in counted))

@@ -82,10 +82,11 @@ def log_facets(picture: Picture, story: Story, path: str) -> None:
 @dataclass(frozen=True)
 class Lever:
     """The light on a shape in the rows of a story, in the frame of the close-up: centre (n, 3) in view units where its
-    force acts, torque (n, 3) N m."""
+    force acts, torque (n, 3) N m, about (n, 3) in view units the point about which it turns."""
 
     centre: np.ndarray
     torque: np.ndarray
+    about: np.ndarray
 
 
 def lever_of(story: Story) -> Lever | None:
@@ -93,12 +94,30 @@ def lever_of(story: Story) -> Lever | None:
     run, craft = story.samples.run, story.setting.craft
     if craft.side is None or run.devices or any(name not in run.environment for name in COLUMNS):
         return None
-    turn = story.near.body
+    turn, about = story.near.body, turns_about(story.setting.resolved.get("attitude"))
     torque = np.stack([run.environment[name] for name in COLUMNS], axis=-1)
     force = run.mass[:, None] * np.einsum("nij,ni->nj", turn, story.near.thrust)
-    centre = centre_of_pressure(force, torque, REACH * craft.side)
+    centre = np.zeros_like(force)
+    if about is not None:
+        centre = centre_of_pressure(force, torque + np.cross(about, force), REACH * craft.side)
     scale = story.craft.close_size / craft.side
-    return Lever(scale * np.einsum("nij,nj->ni", turn, centre), np.einsum("nij,nj->ni", turn, torque))
+    mass = np.zeros(3) if about is None else about
+    return Lever(
+        scale * np.einsum("nij,nj->ni", turn, centre),
+        np.einsum("nij,nj->ni", turn, torque),
+        scale * np.einsum("nij,j->ni", turn, mass),
+    )
+
+
+def turns_about(told: object) -> np.ndarray | None:
+    """The point (3,) m in body axes about which a scene's torques are, by its attitude: the shape's origin of one that
+    is prescribed, else the centre of mass; None where that is not said, or actuators move it or push beside the film,
+    and the force is then drawn from the origin."""
+    if not isinstance(told, dict) or told.get("kind") == "prescribed":
+        return np.zeros(3)
+    if told.get("film_mass") is not None or told.get("actuators"):
+        return None
+    return np.array(told.get("centre_of_mass") or [0.0, 0.0, 0.0], float)
 
 
 def centre_of_pressure(force: np.ndarray, torque: np.ndarray, reach: float) -> np.ndarray:

@@ -52,7 +52,7 @@ def log_close_up(picture: Picture, story: Story, below: int) -> Space:
     log_arrow(picture, story, "push", style.PUSH, length, style.WIDTH["close push"], None if lever is None else acts)
     add_name(names, "push", style.PUSH, acts + beyond(length, eye, 2.6), push_words(story.push), PUSH)
     if lever is not None and lit_shape.turns(story, lever):
-        log_torque(picture, story, eye, names, lever.torque)
+        log_torque(picture, story, eye, names, lever)
     log_close_shares(picture, story, names, length, SHORT + LONGER)
     velocity = VELOCITY * story.near.velocity
     log_arrow(picture, story, "velocity", style.SPEED, velocity, style.WIDTH["close arrow"])
@@ -110,11 +110,12 @@ def log_arrow(
         picture.log_arrows(f"/sail/{name}", story.index, vectors, origins)
 
 
-def log_torque(picture: Picture, story: Story, eye: np.ndarray, names: Names, torque: np.ndarray) -> None:
-    """The torque (n, 3) N m of the light on a shape, from its origin."""
-    arrows, color = lit_shape.torque_arrows(torque), style.QUANTITY["torque"]
-    log_arrow(picture, story, "torque", color, arrows, style.WIDTH["close arrow"])
-    add_name(names, "torque", color, beyond(arrows, eye, 1.2), lit_shape.torque_words(torque), ARROW)
+def log_torque(picture: Picture, story: Story, eye: np.ndarray, names: Names, lever: lit_shape.Lever) -> None:
+    """The torque of the light on a shape, from the point about which it turns."""
+    arrows, color = lit_shape.torque_arrows(lever.torque), style.QUANTITY["torque"]
+    log_arrow(picture, story, "torque", color, arrows, style.WIDTH["close arrow"], lever.about)
+    place = lever.about + beyond(arrows, eye, 1.2)
+    add_name(names, "torque", color, place, lit_shape.torque_words(lever.torque), ARROW)
 
 
 def add_name(names: Names, name: str, color: Color, place: np.ndarray, words: str | list[str], rank: int) -> None:

@@ -72,6 +72,14 @@ def torque_of(f):
     return np.stack([f.truth.environment[name] for name in names], -1)
 
 
+def mass_at(f):
+    """(3,) m: about which the torques are. None where the scene does not say, or actuators act beside the film."""
+    told = f.truth.resolved.get("attitude") or {"kind": "prescribed"}
+    if told["kind"] == "prescribed":
+        return np.zeros(3)
+    return None if told.get("actuators") or told.get("film_mass") else np.array(told["centre_of_mass"] or [0, 0, 0])
+
+
 def acts_at(f):
     """(n, 3) view units: where the line of the force on a shape meets its plane; None where there is no torque."""
     torque = torque_of(f)
@@ -80,6 +88,10 @@ def acts_at(f):
     axes = np.array([turn(q) for q in f.truth.quaternion])
     mass = f.truth.resolved["device"]["mass"]
     force = mass * np.einsum("nij,ni->nj", axes, f.truth.thrust)
+    about = mass_at(f)
+    if about is None:
+        return np.zeros_like(force)
+    torque = torque + np.cross(about, force)  # about the shape's origin
     along = np.sum(torque * force, axis=1) / np.sum(force * force, axis=1)
     torque = torque - along[:, None] * force  # what is left turns about the force's line
     # x and y of the point r in the plane z = 0 for which r x F has the torque's parts across z
@@ -89,9 +101,10 @@ def acts_at(f):
 
 
 def torque_arrow(f, entity):
-    """From the shape's origin along the torque, 2.5 long and 4 times the root of its share of the largest more."""
+    """From what it turns about along the torque, 2.5 long and 4 times the root of its share of the largest more."""
     origin, vector = arrows(f, entity)
-    assert not origin.any()
+    about, size = mass_at(f), CLOSE / float(f.truth.scene["craft_side_m"])
+    same_place(origin, size * (body(f, entity) @ (np.zeros(3) if about is None else about)), size=10)
     torque = torque_of(f)
     axes = np.array([turn(q) for q in f.truth.quaternion])
     same_direction(vector, seen(f, entity, np.einsum("nij,nj->ni", axes, torque)), 1e-3)

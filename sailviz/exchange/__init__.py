@@ -1,7 +1,7 @@
 """Files in which others write where a craft or a small body was, read in plain Python: `check` looks at them too.
 
-Kernels of SPICE (daf.py, spk.py, ck.py) are arrays and want numpy; so do orbit ephemeris messages, which stand in
-run/oem.py.
+Kernels of SPICE (daf.py, spk.py, ck.py, spice.py) are arrays and want numpy; so do orbit ephemeris messages, which
+stand in run/oem.py.
 """
 
 from typing import TYPE_CHECKING

@@ -1,14 +1,17 @@
 """SPK kernels: SPICE and jplephem read what is written, to the last digit; what is damaged is refused in a sentence."""
 
+import sys
 from contextlib import suppress
 
 import numpy as np
 import pytest
 
 from sailviz import two_body
-from sailviz.constants import MU_EARTH
+from sailviz.constants import AU, DAY, MU_EARTH, MU_SUN
 from sailviz.errors import RecordingError
 from sailviz.exchange import daf, spk
+from sailviz.exchange.spice import read_segments
+from sailviz.recording.flights import read_flight
 
 START = 8.274e8  # s of TDB after J2000
 
@@ -109,6 +112,51 @@ def test_jplephem_reads_the_same_arrays(tmp_path):
     assert np.array_equal(array[: 6 * 250].reshape(250, 6), states)
     assert np.array_equal(array[1500:1750], flown.et)
     assert array[1750:].tolist() == [flown.et[99], flown.et[199], 7.0, 250.0]
+
+
+@pytest.mark.parametrize(("kind", "within"), [(spk.HERMITE, 9e-8), (spk.LAGRANGE, 1.35e-7)])
+def test_a_day_between_rows_round_the_sun_costs_a_tenth_of_a_millimetre(spice, kind, within, tmp_path):
+    """A circle at 0.9 au: at the rows an ulp of 1.3e8 km and some 1e-13 km/s, between them 9e-8 and 1.3e-7 km."""
+    radius, rows = 0.9 * AU, 60
+    et = START + DAY * np.arange(0.0, rows, 0.5)
+    rate = np.sqrt(MU_SUN / radius**3)
+    angle = rate * (et - START)
+    c, s = np.cos(angle), np.sin(angle)
+    place = radius * np.column_stack([c, s, 0 * c])
+    speed = radius * rate * np.column_stack([-s, c, 0 * c])
+    path = tmp_path / "a.bsp"
+    spk.write_spk(path, [spk.Arc(et[::2], place[::2], speed[::2])], centre=10, kind=kind)
+    spice.furnsh(str(path))
+    found = np.array([spice.spkez(spk.CRAFT, moment, "J2000", "NONE", 10)[0] for moment in et[:-1]])
+    off = np.linalg.norm(found - np.hstack([place, speed])[:-1] / 1e3, axis=1)
+    assert np.abs(found[::2, :3] - place[::2] / 1e3).max() <= 5e-8
+    assert np.abs(found[::2, 3:] - speed[::2] / 1e3).max() <= 2e-13
+    assert off[9:-9:2].max() < within
+
+
+def test_a_kernel_without_rows_is_read_by_spice(spice, tmp_path, monkeypatch):
+    """Type 15, a conic that its own parameters say; without the extra it is named."""
+    path = str(tmp_path / "a.bsp")
+    handle = spice.spkopn(path, "test", 0)
+    mu, a, e = MU_EARTH / 1e9, 8e3, 0.1
+    span = 2e4
+    axes = [0, 0, 1], [1, 0, 0]
+    shape = a * (1 - e * e), e, 0, [0, 0, 1], mu, 0.0, 6378.0
+    spice.spkw15(handle, -55, 399, "J2000", START, START + span, "conic", START, *axes, *shape)
+    spice.spkcls(handle)
+    (found,) = read_segments(path)
+    assert (found.target, found.centre, found.frame, found.kind) == (-55, 399, "J2000", 15)
+    count = len(found.et)
+    assert 300 < count < 600  # 120 in a revolution and more, of 7121 s, by the fastest pace
+    r = [1e3 * a * (1 - e), 0.0, 0.0]
+    v = [0.0, 1e3 * np.sqrt(mu / a * (1 + e) / (1 - e)), 0.0]
+    place, speed = two_body.advance(np.tile(r, (count, 1)), np.tile(v, (count, 1)), found.et - START, MU_EARTH)
+    assert np.abs(found.position - place).max() < 1e-2  # m: an ulp of 26 years at 8 km/s
+    assert np.abs(found.velocity - speed).max() < 1e-5
+    assert len(read_flight(path)) == count
+    monkeypatch.setitem(sys.modules, "spiceypy", None)
+    with pytest.raises(RecordingError, match=r"type 15, which SPICE reads: pip install .sailviz\[spice\]"):
+        read_segments(path)
 
 
 @pytest.mark.parametrize("kind", [spk.HERMITE, spk.LAGRANGE])

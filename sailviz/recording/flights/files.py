@@ -20,6 +20,7 @@ from sailviz import frames, ndm
 from sailviz.calendar import DateError, tai
 from sailviz.errors import RecordingError
 from sailviz.exchange import earth_frames, spk
+from sailviz.exchange.spice import read_segments
 from sailviz.recording.flights.centre import body_of, centre_of, check_named
 from sailviz.recording.flights.columns import Columns, read_columns
 from sailviz.run import dates
@@ -139,7 +140,7 @@ def _in_equator_of_date(given: Ephemeris) -> tuple[Ephemeris, str]:
 
 def _of_kernel(path: str | Path) -> Ephemeris:
     """The segments of one craft about one body in one frame, as one trajectory."""
-    segments = spk.read_spk(path)
+    segments = read_segments(path)
     about = {(one.target, one.centre, one.frame) for one in segments}
     if len(about) > 1:
         told = "; ".join(f"{target} about {centre} in {frame}" for target, centre, frame in sorted(about)[:4])

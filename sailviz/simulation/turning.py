@@ -68,14 +68,8 @@ def turning_of(scene: Scene, steered: LoweredSteering) -> Turning | None:
         return None
     inertia, centre = mass_properties(scene)
     lit = isinstance(scene.device, SolarSail)
-    body = Body(
-        FREE,
-        *six(inertia),
-        *six(np.linalg.inv(inertia)),
-        *centre.tolist(),
-        lit=float(lit),
-        gradient=float(said.gravity_gradient),
-    )
+    body = Body(FREE, *six(inertia), *six(np.linalg.inv(inertia)), *centre.tolist())
+    body = body._replace(lit=float(lit), gradient=float(said.gravity_gradient))
     if isinstance(said, section.SpinAveragedAttitude):
         return Turning(body._replace(motion=AVERAGED), (), ())
     if not isinstance(said, section.ControlledAttitude):
@@ -136,12 +130,13 @@ def _with_actuators(scene: Scene, said: section.ControlledAttitude, body: Body) 
             assert isinstance(device, SolarSail)
             film = surface_of_film(device)
             assert film.back is not None  # a film has two sides
-            place = (*one.position, one.area)
+            x, y, z = one.position
             if isinstance(one, section.Vane):
-                vanes.append((*Vane(*place, one.limit, one.rest, *film.front, *film.back),))
+                (f1, f2, f3), (g1, g2, g3) = film.front, film.back
+                vanes.append(tuple(Vane(x, y, z, one.area, one.limit, one.rest, f1, f2, f3, g1, g2, g3)))
             else:
-                off = side_of(_film(one.off))
-                patches.append((*ReflectivityDevice(*place, *np.subtract(film.front, off).tolist()),))
+                d1, d2, d3 = np.subtract(film.front, side_of(_film(one.off))).tolist()
+                patches.append(tuple(ReflectivityDevice(x, y, z, one.area, d1, d2, d3)))
     names = [f"vane_{i + 1}_angle_rad" for i in range(len(vanes))]
     names += [f"device_{i + 1}_on" for i in range(len(patches))]
     body = body._replace(vanes=float(len(vanes)), devices=float(len(patches)))

@@ -120,12 +120,13 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
     device, steered, overhead = pushed_by_shape(*under_sky(sky, device, steered))
     device, overhead = blown_by_air(scene, device, overhead)
     device, overhead = by_its_force(scene, device, overhead)
+    if steering is not None:
+        nobody_follows(scene)
     addresses, keep = _own_functions(steering=steering, force=force)
     if addresses and (ages(scene) or wheel_of(scene) is not None):
         words = "a function of one's own gets the mass, which a film that ages or a wheel as a body does not carry."
         raise SceneError([Fault("device.ageing" if ages(scene) else "device.wheel", words)], scene.source)
     if steering is not None:
-        nobody_follows(scene)
         steered = LoweredSteering(attitude.USER)
     turning = turning_of(scene, steered)
     when, times_beside = schedules(scene, steered.table)

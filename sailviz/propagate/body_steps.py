@@ -11,7 +11,7 @@ import numpy as np
 
 from sailviz.compiled import called, entry, inlined
 from sailviz.compiled.rebound import plain, rebound
-from sailviz.propagate import dop853, events, stepping
+from sailviz.propagate import dop853, events, step_events, stepping
 from sailviz.propagate.body_motion import (
     AVERAGED,
     CONTROLLED,
@@ -137,10 +137,11 @@ def settle(s, breaks, factors, p, t, limit, t_end, cut, interval, factor):
 
 _CHANGES = {"SIZE": SIZE, "derivative": body_derivative, "quantity": quantity, "_error": _error, "settle": settle}
 _INLINED = (
-    dop853.stages, dop853.interpolant, dop853.attempt, stepping.evaluate, stepping.root, stepping.at,
-    stepping.crossing, stepping.happenings, stepping.events_until, stepping.begin, events.off_level, events.sign_at,
+    dop853.stages, dop853.interpolant, dop853.attempt, step_events.evaluate, step_events.root, step_events.at,
+    step_events.crossing, step_events.happenings, step_events.events_until, stepping.begin, events.off_level,
+    events.sign_at,
 )  # fmt: skip
-_CALLED = (stepping.dip, stepping.find_events)
+_CALLED = (step_events.dip, step_events.find_events)
 _functions = [
     *((inlined, one) for one in _INLINED),
     *((called, one) for one in _CALLED),

@@ -49,6 +49,7 @@ from sailviz.propagate.dynamics import SIZE
 from sailviz.propagate.events import APSIS, RADIUS, Watch, measure
 from sailviz.propagate.parameters import PARAMETERS
 from sailviz.propagate.patience import first_piece
+from sailviz.propagate.step_events import evaluate, events_until, root
 from sailviz.propagate.stepping import (
     CLOCK,
     EVENTS,
@@ -69,12 +70,9 @@ from sailviz.propagate.stepping import (
     Y,
     begin,
     close_block,
-    evaluate,
-    events_until,
     in_pieces,
     next_limit,
     open_block,
-    root,
     settle,
 )
 from sailviz.propagate.stepping import DONE as DONE

@@ -254,7 +254,7 @@ def keep_polynomial(nodes, work, t, h, burns):
 
 @inlined
 def by_powers(nodes, polynomial):
-    """The polynomial as `stepping.evaluate` wants it: (POWERS, SIZE)."""
+    """The polynomial as `step_events.evaluate` wants it: (POWERS, SIZE)."""
     for k in range(POWERS):
         for j in range(SIZE):
             polynomial[k, j] = nodes[DENSE + POWERS * j + k]

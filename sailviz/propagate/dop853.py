@@ -19,6 +19,7 @@ from sailviz.propagate.dynamics import SIZE, derivative
 from sailviz.propagate.events import Watch
 from sailviz.propagate.parameters import PARAMETERS
 from sailviz.propagate.patience import first_piece
+from sailviz.propagate.step_events import happenings, surface_met
 from sailviz.propagate.stepping import (
     CLOCK,
     DENSE,
@@ -42,14 +43,12 @@ from sailviz.propagate.stepping import (
     Y,
     begin,
     close_block,
-    happenings,
     in_pieces,
     next_edge,
     next_limit,
     open_block,
     rows_until,
     settle,
-    surface_met,
 )
 from sailviz.propagate.stepping import DONE as DONE
 from sailviz.propagate.stepping import EVENTS_FULL as EVENTS_FULL

@@ -53,6 +53,7 @@ from sailviz.propagate.gauss_jackson_steps import (
 )
 from sailviz.propagate.parameters import PARAMETERS
 from sailviz.propagate.patience import first_piece
+from sailviz.propagate.step_events import happenings, surface_met
 from sailviz.propagate.stepping import (
     CLOCK,
     DENSE,
@@ -79,13 +80,11 @@ from sailviz.propagate.stepping import (
     Y,
     begin,
     close_block,
-    happenings,
     in_pieces,
     next_limit,
     open_block,
     rows_until,
     settle,
-    surface_met,
 )
 from sailviz.propagate.stepping import NOT_FINITE as NOT_FINITE
 from sailviz.propagate.stepping import STOPPED as STOPPED

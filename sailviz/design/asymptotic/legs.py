@@ -37,7 +37,7 @@ SAMPLES = 12  # per half revolution, in the search for q3 <= 0 or s <= 0
 MOST_LEGS = 10_000_000
 AT_ONCE = 50_000  # legs and outputs in one piece of compiled work, which hears no Ctrl-C: 0.1 s
 
-# Gauss-Legendre with 3, 8 and 20 points, one after the other, for panels that are short, middling and up to a half turn
+# Gauss-Legendre with 3, 8 and 20 points in turn, for panels that are short, middling and up to a half turn
 _NODES, _WEIGHTS = (np.concatenate(x) for x in zip(*map(np.polynomial.legendre.leggauss, (3, 8, 20)), strict=True))
 
 

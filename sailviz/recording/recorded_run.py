@@ -48,7 +48,11 @@ def run_of(recording: Recording) -> Run:
         velocity=state["velocity_m_s"],
         mass=state["mass_kg"],
         attitude=Attitude(
-            *(attitude[name] for name in ("pitch_rad", "cone_rad", "clock_rad", "normal", "quaternion")),
+            attitude["pitch_rad"],
+            attitude["cone_rad"],
+            attitude["clock_rad"],
+            attitude["normal"],
+            attitude["quaternion"],
             motion={name: attitude[name] for name in MOTION if name in attitude},
         ),
         thrust=thrust_from(thrust),

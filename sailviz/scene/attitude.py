@@ -129,31 +129,38 @@ def _no_inertia(given: list[float] | list[list[float]]) -> str:
     rows = [row for row in given if isinstance(row, list)]
     if len(given) != 3 or (rows and (len(rows) != 3 or any(len(row) != 3 for row in rows))):
         return "needs three principal moments, or a matrix of three rows of three"
-    if not rows:
-        a, b, c = sorted(value for value in given if isinstance(value, float))
-        if a <= 0:
-            return "needs positive moments"
-        return "" if a + b >= c * (1 - 1e-12) else "of no body: one moment is larger than the two others together"
+    if rows:
+        return _no_matrix_of_inertia(rows)
+    a, b, c = sorted(value for value in given if isinstance(value, float))
+    if a <= 0:
+        return "needs positive moments"
+    return "" if a + b >= c * (1 - 1e-12) else "of no body: one moment is larger than the two others together"
+
+
+def _no_matrix_of_inertia(rows: list[list[float]]) -> str:
+    """The same for a matrix."""
     if not all(isfinite(value) for row in rows for value in row):
         return "needs numbers"
-    for i in range(3):
-        for j in range(i):
-            if abs(rows[i][j] - rows[j][i]) > 1e-9 * (abs(rows[i][i]) + abs(rows[j][j])):
-                return "needs a symmetric matrix"
+    pairs = ((1, 0), (2, 0), (2, 1))
+    if any(abs(rows[i][j] - rows[j][i]) > 1e-9 * (abs(rows[i][i]) + abs(rows[j][j])) for i, j in pairs):
+        return "needs a symmetric matrix"
+    return "" if _has_mass(rows) else "of no body: about some axis it is larger than about the two across it together"
+
+
+def _has_mass(rows: list[list[float]]) -> bool:
+    """Whether a distribution of mass has this inertia, in two directions at least."""
     # the second moments of mass, S = tr(I)/2 - I, have no negative eigenvalue: nor has a leading or other minor
     half = 0.5 * (rows[0][0] + rows[1][1] + rows[2][2])
     s = [[(half if i == j else 0.0) - rows[i][j] for j in range(3)] for i in range(3)]
     little = 1e-12 * abs(half)
-    pairs = [s[i][i] * s[j][j] - s[i][j] ** 2 for i in range(3) for j in range(i)]
+    pairs = [s[i][i] * s[j][j] - s[i][j] ** 2 for i, j in ((1, 0), (2, 0), (2, 1))]
     whole = (
         s[0][0] * (s[1][1] * s[2][2] - s[1][2] ** 2)
         - s[0][1] * (s[0][1] * s[2][2] - s[1][2] * s[0][2])
         + s[0][2] * (s[0][1] * s[1][2] - s[1][1] * s[0][2])
     )
     negative = min(s[i][i] for i in range(3)) < -little or min(pairs) < -little * half or whole < -little * half**2
-    if negative or half <= 0 or sum(value > little for value in (s[0][0], s[1][1], s[2][2])) < 2:
-        return "of no body: about some axis it is larger than about the two across it together"
-    return ""
+    return not negative and half > 0 and sum(value > little for value in (s[0][0], s[1][1], s[2][2])) >= 2
 
 
 class PrescribedAttitude(TurningMass):

@@ -135,15 +135,7 @@ def latest_end(phase: Phase, begin: float, duration: float) -> float:
 def quantities_watched(scene: Scene, device: int, phase: Phase | None = None) -> Callback | None:
     """What tells the quantities that the scene's events watch, and the end of a phase; None where they watch none.
     device : of propulsion.devices."""
-    stems = {event.quantity for event in scene.event if event.kind is None and event.quantity}
-    until = None if phase is None else until_of(phase)
-    if isinstance(until, Until) and until.quantity is not None:
-        stems.add(until.quantity)
-    if getattr(scene.device, "hottest", None) is not None:
-        stems.add("film_temperature")
-    wheel = getattr(scene.device, "wheel", None)
-    if wheel is not None and wheel.hold:
-        stems.add("modulation")
+    stems = _stems_watched(scene, phase)
     if any(stem in OF_WHEEL for stem in stems):
         return wheel_quantities(all(stem in OF_WHEEL for stem in stems))
     stems |= {stem for _, stem, _ in events_of_turning(scene)}
@@ -158,3 +150,17 @@ def quantities_watched(scene: Scene, device: int, phase: Phase | None = None) ->
     if has_sky(scene) and (stems or blown):
         return sky_quantities()
     return quantity_callback(stems, device == PLASMA_BRAKE) if stems else None
+
+
+def _stems_watched(scene: Scene, phase: Phase | None) -> set[str]:
+    """What the scene's own events watch, and those that a film that may be too hot and a wheel bring along."""
+    stems = {event.quantity for event in scene.event if event.kind is None and event.quantity}
+    until = None if phase is None else until_of(phase)
+    if isinstance(until, Until) and until.quantity is not None:
+        stems.add(until.quantity)
+    if getattr(scene.device, "hottest", None) is not None:
+        stems.add("film_temperature")
+    wheel = getattr(scene.device, "wheel", None)
+    if wheel is not None and wheel.hold:
+        stems.add("modulation")
+    return stems

@@ -120,12 +120,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
     device, steered, overhead = pushed_by_shape(*under_sky(sky, device, steered))
     device, overhead = blown_by_air(scene, device, overhead)
     device, overhead = by_its_force(scene, device, overhead)
-    if steering is not None:
-        nobody_follows(scene)
-    addresses, keep = _own_functions(steering=steering, force=force)
-    if addresses and (ages(scene) or wheel_of(scene) is not None):
-        words = "a function of one's own gets the mass, which a film that ages or a wheel as a body does not carry."
-        raise SceneError([Fault("device.ageing" if ages(scene) else "device.wheel", words)], scene.source)
+    addresses, keep = _own_of(scene, steering, force)
     if steering is not None:
         steered = LoweredSteering(attitude.USER)
     turning = turning_of(scene, steered)
@@ -135,8 +130,8 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
     own_switches = named_switches(scene, steered.switches)
     when = replace(when, switches=tuple(sorted({*when.switches, *own_switches})))
     beside = devices_beside(scene, position, velocity, times_beside, sky is not None)
-    if phase is not None:
-        when = replace(when, factors=when.factors * phase.state_of(scene.device).level)
+    level = 1.0 if phase is None else phase.state_of(scene.device).level
+    when = replace(when, factors=level * when.factors)
     names, watching = watched(scene, body, phase)
     place = Place(scene, body, epoch_of(scene))
     around = [record.lower(part, place) for part, record in parts_of(scene)]
@@ -155,7 +150,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         **turning_numbers(turning),
         quantity=quantities_watched(scene, device.kind, phase),
         wheel=wheel_numbers(scene, strength or 0.0),
-        film=film_numbers(scene, strength or 0.0, 1.0 if phase is None else phase.state_of(scene.device).level),
+        film=film_numbers(scene, strength or 0.0, level),
         **addresses,
         **merged(
             {"forces": device.forces},
@@ -213,9 +208,15 @@ def _seventh(scene: Scene) -> float:
     return dose
 
 
-def _own_functions(**functions: object) -> tuple[dict[str, int], tuple[object, ...]]:
-    """(keywords of `dynamics.model`, what must stay alive) of the user's functions by the name of their part."""
+def _own_of(scene: Scene, steering: object, force: object) -> tuple[dict[str, int], tuple[object, ...]]:
+    """(keywords of `dynamics.model`, what must stay alive) of the user's functions. SceneError where they cannot be."""
+    if steering is not None:
+        nobody_follows(scene)
+    functions = {"steering": steering, "force": force}
     compiled = {part: user_address(function, part) for part, function in functions.items() if function is not None}
+    if compiled and (ages(scene) or wheel_of(scene) is not None):
+        words = "a function of one's own gets the mass, which a film that ages or a wheel as a body does not carry."
+        raise SceneError([Fault("device.ageing" if ages(scene) else "device.wheel", words)], scene.source)
     addresses = {f"user_{part}": address for part, (address, _) in compiled.items()}
     return addresses, tuple(handle for _, handle in compiled.values())
 

@@ -137,7 +137,8 @@ def scaled(value, factor):
 
 
 @pytest.mark.parametrize("name", sorted(RAW))
-def test_a_scene_in_other_units_is_the_same_to_schema_and_checker(name):
+def test_a_scene_in_other_units_is_the_same_to_schema_and_checker(name, monkeypatch):
+    monkeypatch.chdir(shipped_scenes()[name].parent)  # where the files are that it names
     moved = in_other_units(RAW[name])
     assert plain(moved) != plain(RAW[name])
     assert VALIDATOR.is_valid(plain(moved))

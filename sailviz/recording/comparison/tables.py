@@ -343,15 +343,19 @@ def picture_of(recording: Recording) -> Iterator[Drawn]:
         if name in apart or name.startswith(FLIGHT):
             continue
         batches = [chunk.to_record_batch() for chunk in recording.chunks(name)]
-        batches = [each for each in batches if not (filled and is_between(name, each.schema.names))]
-        temporal = [batch for batch in batches if any(line in batch.schema.names for line in TIMELINES)]
-        static = [batch for batch in batches if not any(line in batch.schema.names for line in TIMELINES)]
-        columns = {short(key): (np.array([-1]), value) for key, value in latest_static(static).items()}
-        for table in group_by_columns(temporal):
-            steps = table["step"].to_numpy() if "step" in table.column_names else np.arange(len(table))
-            for key in table.column_names:
-                if is_component(table[key].type):
-                    within = "step" not in table.column_names and short(key) in columns
-                    word = f"{short(key)} within gaps" if within else short(key)
-                    columns[word] = (steps, table[key].combine_chunks())
-        yield name, columns
+        yield name, _columns([each for each in batches if not (filled and is_between(name, each.schema.names))])
+
+
+def _columns(batches: list[pa.RecordBatch]) -> dict[str, tuple[np.ndarray, pa.Array]]:
+    """Of one entity."""
+    temporal = [batch for batch in batches if any(line in batch.schema.names for line in TIMELINES)]
+    static = [batch for batch in batches if not any(line in batch.schema.names for line in TIMELINES)]
+    columns = {short(key): (np.array([-1]), value) for key, value in latest_static(static).items()}
+    for table in group_by_columns(temporal):
+        steps = table["step"].to_numpy() if "step" in table.column_names else np.arange(len(table))
+        for key in table.column_names:
+            if is_component(table[key].type):
+                within = "step" not in table.column_names and short(key) in columns
+                word = f"{short(key)} within gaps" if within else short(key)
+                columns[word] = (steps, table[key].combine_chunks())
+    return columns

@@ -86,7 +86,7 @@ def log_beside(picture: Picture, story: Story, there: Neighbour) -> Space:
         show_labels=True,
     )
     picture.log_static(f"{path}/sunlight", light)
-    seen = [own, np.zeros((1, 3)), [SUNLIGHT]]
+    seen = [own, np.zeros((1, 3)), np.array([SUNLIGHT])]
     if story.most > 0:
         length = np.where(story.push > 0, ARROW + ARROW * story.push / story.most, 0.0)
         arrow = length[:, None] * to_frame(there.axes, unit(story.thrust))

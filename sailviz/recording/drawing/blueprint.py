@@ -45,12 +45,12 @@ def blueprint(layout: Layout) -> rrb.Blueprint:
     )
 
 
-def selection(turn: tuple[float, float] | None) -> rr.encodings.AbsoluteTimeRange | None:
+def selection(turn: tuple[float, float] | None) -> rrb.components.AbsoluteTimeRange | None:
     """A span of the run, s, as the time panel selects it."""
     if turn is None:
         return None
     start, end = (round(1e9 * seconds) for seconds in turn)
-    return rr.encodings.AbsoluteTimeRange(min=start, max=end)
+    return rrb.components.AbsoluteTimeRange(min=start, max=end)
 
 
 def left(layout: Layout) -> rrb.Container:

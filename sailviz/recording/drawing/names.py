@@ -82,8 +82,8 @@ class Names:
         time: np.ndarray,
         taken: list[tuple[np.ndarray, np.ndarray]],
     ) -> tuple[Name, np.ndarray, np.ndarray]:
-        """A name at the first of its places where it meets the fewest others, its places (m, 3) and boxes (m, 4) at
-        times (m,) s."""
+        """A name at the first of its places where it meets the fewest others and the edge of the view, its places
+        (m, 3) and boxes (m, 4) at times (m,) s."""
         best, least = None, np.inf
         for spot in (name.places, *name.choices):
             stood = replace(name, places=np.broadcast_to(spot, name.places.shape))
@@ -91,6 +91,7 @@ class Names:
             places = np.concatenate([stood.places, np.repeat(stood.places[-1:], later, axis=0)])
             box = boxes(name.words, places, camera, turn, self._size)
             met = sum(int(meeting(box, seen_at(time, times, other)).sum()) for times, other in taken)
+            met += int(np.sum(np.isfinite(places[:, 0]) & np.isnan(box[:, 0])))  # cut by the edge of the view
             if met < least:
                 best, least = (stood, places, box), met
         assert best is not None  # there is one place at least

@@ -88,17 +88,21 @@ def _asked(scene: Scene) -> Faults:
     found: Faults = []
     if not ages(scene):
         found += [(place, "only a film that ages has a dose: device.ageing") for place in asked_for(scene, "dose")]
-    places = asked_for(scene, "film_temperature")
-    device = scene.device
+    elif scene.device.mass is not None:
+        words = "no propellant burns beside a film that ages: the mass stays as it is"
+        found += [(place, words) for place in asked_for(scene, "mass") if not place.startswith("expect")]
+    return found + _temperature_asked(scene)
+
+
+def _temperature_asked(scene: Scene) -> Faults:
+    """The temperature of a film, where there is none; and what it is warmed by."""
+    found: Faults = []
+    places, device = asked_for(scene, "film_temperature"), scene.device
     warm = isinstance(device, SolarSail) and device.shape is None and device.control is None
     if places and not warm:
         found += [(place, "the temperature is known of the film of a flat solar sail only") for place in places]
     elif places and not radiates(device):
         found += [(place, NO_HEAT if has_optics(device) else f"film_temperature {NEEDS_OPTICS}") for place in places]
-    if ages(scene) and scene.device.mass is not None:
-        for place in asked_for(scene, "mass"):
-            if not place.startswith("expect"):
-                found.append((place, "no propellant burns beside a film that ages: the mass stays as it is"))
     shone_on = ages(scene) or places or getattr(device, "hottest", None)
     if shone_on and not isinstance(scene.body, str) and (scene.light is None or not scene.light.bright):
         words = f"how bright the light of {scene.body.name} is has to be said: light.irradiance_W_m2"

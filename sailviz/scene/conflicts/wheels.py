@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sailviz.scene.conflicts.answers import Faults
-from sailviz.scene.device import ElectricSail
+from sailviz.scene.device import ElectricSail, Wheel
 from sailviz.scene.film import asked_for
 from sailviz.scene.sky import light_away, magnetosphere_of
 from sailviz.scene.steering import FrameSteering, OptimalSteering, PlainSteering
@@ -31,7 +31,11 @@ def wheel_of_the_sail(scene: Scene) -> Faults:
             words = "is known of an electric sail with a wheel: device.wheel"
             found += [(place, f"{stem} {words}") for place in asked_for(scene, stem)]
         return found
-    wheel, where = device.wheel, "device.wheel"
+    return found + _of_its_hardware(scene, device) + _of_its_steering(scene) + _of_its_spin(scene, device.wheel)
+
+
+def _of_its_hardware(scene: Scene, device: ElectricSail) -> Faults:
+    found, where = list[tuple[str, str]](), "device.wheel"
     if device.model != "final":
         found.append((where, 'the wheel is made of the final model\'s tethers: model = "final"'))
     if device.tethers is None:
@@ -45,7 +49,11 @@ def wheel_of_the_sail(scene: Scene) -> Faults:
     if scene.ensemble or scene.chaos:
         place = "ensemble[0]" if scene.ensemble else "chaos[0]"
         found.append((place, "ensembles fly wheels that are flat: device.wheel"))
-    steering = scene.steering
+    return found
+
+
+def _of_its_steering(scene: Scene) -> Faults:
+    found, steering = list[tuple[str, str]](), scene.steering
     if isinstance(steering, OptimalSteering) and steering.reckons_with is None:
         words = 'was solved for a flat wheel: reckons_with = "electric-sail", or another steering'
         found.append(("steering.kind", f'"{steering.kind}" {words}'))
@@ -53,6 +61,11 @@ def wheel_of_the_sail(scene: Scene) -> Faults:
         found.append(("steering.kind", "orbits are designed for a wheel that is flat and does not spin"))
     if isinstance(steering, FrameSteering) and abs(steering.pitch) > STEEPEST:
         found.append(("steering.pitch", "beyond 85.9 deg no voltage holds the axis of a wheel"))
+    return found
+
+
+def _of_its_spin(scene: Scene, wheel: Wheel) -> Faults:
+    found, steering = list[tuple[str, str]](), scene.steering
     if wheel.spin_period is not None:
         if steering is not None and steering.kind not in FOLLOWS:
             words = "the drift of the spin is known of axes that keep their angles to the orbit"

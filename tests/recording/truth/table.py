@@ -211,8 +211,9 @@ def of_craft(top: str) -> list[Claim]:
     rows = [row for row in rows if near or not row.pattern.endswith(("/seams", "/tips", "/facets"))]
     if top != "/world/rtn":
         return [row for row in rows if not row.pattern.startswith(tether)]
-    wheel = ("/tethers", "/rim", "/tips", "/hub", "/disc", "/dot", "shape/sheath")  # no electric sail flies so low
-    return [row for row in rows if not row.pattern.endswith(wheel)]
+    # no electric sail flies so low; what presses on facets shows from close by
+    other = ("/tethers", "/rim", "/tips", "/hub", "/disc", "/dot", "shape/sheath", "/facets")
+    return [row for row in rows if not row.pattern.endswith(other)]
 
 
 def bus(f, entity):
@@ -329,6 +330,7 @@ ENSEMBLES = (
 BESIDE = "/world/flight/*"
 TOGETHER = (
     Claim("/world/names/flight/*", POINT, "/scene flights, /state", INERTIAL, "1/L", together.name),
+    Claim(f"{BESIDE}/trail/unknown", LINE, "/flight/*/state, gaps_s", INERTIAL, "1/L", together.beside(system.unknown)),
     Claim(f"{BESIDE}/trail/*", LINE, "/flight/*/state position_m", INERTIAL, "1/L", together.trail),
     Claim(f"{BESIDE}/craft", f"{MOVE} {POINT}", "/flight/*/state", INERTIAL, "1/L", place_beside),
     Claim(f"{BESIDE}/craft/body", MOVE, "/flight/*/attitude", INERTIAL, "1", together.beside(craft.body_pose)),

@@ -141,6 +141,7 @@ PlotWord = Literal[
     "modulation",
     "thrust_lost",
     "wheel_torque",
+    "light_torque",
     "irradiance",
     "electrochromic_state",
 ]

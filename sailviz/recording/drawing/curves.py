@@ -32,6 +32,7 @@ MOST_BINS, ROWS_IN_BIN = 400, 8
 BAND_TURNS = 40.0  # revolutions from which a swing within one is a solid block
 SWING = 0.04  # of the whole range, within a bin, from which a curve is a band
 BAND_SHADE = 0.6
+ROUNDING = 1e-9  # of the largest component of a vector, below which another is not shown though it is asked for
 
 
 @dataclass
@@ -103,6 +104,11 @@ def hidden(plot: Plot, about: Sequence[str]) -> bool:
     return plot.rare or (plot.key in RARE and plot.key.split("_")[0] not in about)
 
 
+def largest(values: np.ndarray) -> float:
+    """The largest size of values that are known."""
+    return float(np.nanmax(np.abs(values), initial=0.0))
+
+
 def worth_of(plot: Plot, values: np.ndarray) -> float:
     """What the change of the curves of a plot, values (n, k), is worth."""
     return max((score(values[:, k], plot.natural, plot.bonus) for k in range(values.shape[1])), default=0.0)
@@ -147,11 +153,18 @@ class Curves:
         """
         rows = self.close(last)
         found: list[tuple[float, PlotView]] = []
+        most = [0.0] * len(asked)  # of the plots that one word calls
+        for plot in self.plots:
+            place = wanted_place(plot, asked)
+            if place is not None:
+                most[place] = max(most[place], largest(self.values_of(plot)))
         for plot in self.plots:
             values = self.values_of(plot)
+            place = wanted_place(plot, asked)
+            if place is not None and largest(values) < ROUNDING * most[place]:
+                continue
             if plot.handy:
                 plot, values = self._in_handy_unit(plot, values)
-            place = wanted_place(plot, asked)
             worth = worth_of(plot, values)
             if place is None and (worth < SHOWN_FROM or hidden(plot, about)):
                 continue

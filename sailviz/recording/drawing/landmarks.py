@@ -226,14 +226,15 @@ def reaches(story: Story, target: Reference) -> bool:
 
 def log_marks(picture: Picture, story: Story, eye: np.ndarray, names: Names) -> None:
     """Dots and names at the start, at the end and at one or two events between; a ring has neither start nor end."""
-    if story.ring or np.linalg.norm(story.position - story.position[0], axis=1).max() < 1e-2 * story.reach:
+    away = np.linalg.norm(story.position - story.position[0], axis=1)
+    if story.ring or away.max() < 1e-2 * story.reach:
         return
     phases = reached(story.setting)
     begins = f"start: {phases[0].name}" if phases else "start"
     marks = [(begins, story.position[0]), *marked_events(story)]
     if story.setting.ensembles:
         marks = marks[:1]
-    elif np.linalg.norm(story.position[-1] - story.position[0]) < MEET * story.reach:
+    elif away[-1] < MEET * story.reach < 0.5 * away.max():  # it has been elsewhere meanwhile
         marks = [*marks[:-1], (f"{marks[-1][0]}: where it began", story.position[-1])][1:]
     rise = np.array([0.0, 0.0, style.RAISED * story.reach / max(np.sqrt(1 - eye[2] ** 2), 0.3)])
     dots = np.array([place for _, place in marks])

@@ -55,8 +55,8 @@ def is_lit(story: Story) -> bool:
 
 
 def lit_words(story: Story) -> list[str]:
-    """What the colours of facets and the torque mean, where they are drawn."""
-    return [LEGEND] if is_lit(story) else []
+    """What the colours of facets and the torque mean, where they are drawn: not in a low orbit."""
+    return [LEGEND] if is_lit(story) and not story.frame.low else []
 
 
 def log_facets(picture: Picture, story: Story, path: str) -> None:

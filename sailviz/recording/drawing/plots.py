@@ -56,6 +56,8 @@ UNITS = {  # ending of a name -> factor and unit on the plot; the longest that f
     "_deg": (1.0, "deg"),
     "_N_m": (1e9, "nN"),
     "_torque_N_m": (1.0, "N m"),
+    "_x_m": (1e3, "mm"),
+    "_y_m": (1e3, "mm"),
     "_N": (1e3, "mN"),
     "_Pa": (1e9, "nPa"),
     "_V": (1.0, "V"),
@@ -95,6 +97,8 @@ WORDS = {  # columns of the environment whose title is not their name
     "modulation": "Swing of the voltage about its mean",
     "thrust_lost": "Thrust that the swing costs",
     "wheel_torque_N_m": "Torque of the wind on the wheel",
+    "slide_x_m": "Place of the sliding mass along x",
+    "slide_y_m": "Place of the sliding mass along y",
     "switching_function": "Switching function: pushes where positive",
 }
 COLOR_OF = (  # part of a column's name -> the quantity whose colour it has

@@ -23,6 +23,7 @@ def marks(f, entity):
     back = "/world/marks/0" in f.picture.entities and "began" in f.picture.fixed("/world/marks/0", "Points3D:labels")[0]
     if back:
         assert np.linalg.norm(true[0] - true[-1]) < 0.07 * np.abs(true).max()
+        assert np.linalg.norm(true - true[0], axis=1).max() > 0.1 * np.abs(true).max(), "it has been nowhere else"
     else:
         same_place(places[0], true[0])
     if len(places) > 1 or back:

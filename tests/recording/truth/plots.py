@@ -27,6 +27,7 @@ UNITS = {  # SI to what a title says
     "µN m": 1e6,
     "mN": 1e3,
     "mA": 1e3,
+    "mm": 1e3,
     "kV": 1e-3,
     "%": 100.0,
     "yr": 1.0,

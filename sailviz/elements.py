@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 CIRCULAR = 1e-11  # eccentricity below which the apse line is rounding noise
+PARABOLIC = 1e-14  # of the distance over the semi-major axis, which below is rounding and none
 EQUATORIAL = 1e-11  # sine of the inclination below which the node is rounding noise
 Number = TypeVar("Number", bound=np.ndarray | float, covariant=True)  # columns (n,), or one of each
 
@@ -44,7 +45,8 @@ def elements(position: ArrayLike, velocity: ArrayLike, mu: float) -> Elements[np
     e_vec = np.cross(v_vec, h_vec) / mu - r_vec / r[..., None]
     e = np.linalg.norm(e_vec, axis=-1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        a = 1.0 / (2.0 / r - v2 / mu)
+        inverse = 2.0 / r - v2 / mu
+        a = np.where(np.abs(inverse) < PARABOLIC / r, np.inf, 1.0 / inverse)
         h_hat = np.where((h > 1e-14 * r * np.sqrt(v2))[..., None], h_vec / h[..., None], np.nan)
     sin_i = np.hypot(h_hat[..., 0], h_hat[..., 1])
     inclination = np.arctan2(sin_i, h_hat[..., 2])
@@ -113,7 +115,7 @@ def mean_semi_major_axis(position: ArrayLike, velocity: ArrayLike, mu: float, ob
     h = np.cross(r_vec, v_vec)
     h2 = np.sum(h * h, axis=-1)
     energy = 2.0 / r - np.sum(v_vec * v_vec, axis=-1) / mu
-    a = 1.0 / np.where(energy > 0, energy, np.nan)
+    a = 1.0 / np.where(energy > PARABOLIC / r, energy, np.nan)
     h2 = np.where(h2 > 0, h2, np.nan)
     sin2_i = 1.0 - h[..., 2] ** 2 / h2
     now = (a / r) ** 3 * (1.0 - 3.0 * (r_vec[..., 2] / r) ** 2)

@@ -166,6 +166,7 @@ VALUES: dict[str, Value] = {
     "thrust_voltage": _acted("thrust_voltage_V"),
     "wind_pressure": _acted("solar_wind_pressure_Pa"),
     "electrochromic_state": _acted("electrochromic_state"),
+    "saturated": _acted("saturated"),  # of an ensemble: the share of time at the largest voltage
     "dose": _of_film("dose_yr", YEAR),
     "film_temperature": _of_film("temperature_K"),
     "spin_rate": _acted("spin_rate_rad_s"),
@@ -177,5 +178,4 @@ VALUES: dict[str, Value] = {
     "wheel_momentum": lambda run: np.abs(_wheels(run)).max(axis=1),  # of the wheel that holds most
     "light_torque": _torque("light_torque"),
     "control_torque": _torque("control_torque"),
-    "saturated": _acted("saturated"),  # of an ensemble: the share of time at the largest voltage
 }

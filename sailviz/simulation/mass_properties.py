@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from sailviz.errors import Fault, SceneError
-from sailviz.shapes.facets import elements_of, film_inertia
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
@@ -42,6 +41,8 @@ def mass_properties(scene: Scene) -> MassProperties:
 def of_shape(shape: Shape, film_mass: float, rest: float) -> MassProperties:
     """Of films that weigh film_mass kg, all alike, and closed bodies, alike and filled, that weigh the rest. ValueError
     where there is nothing to hold it."""
+    from sailviz.shapes.facets import elements_of, film_inertia  # trimesh: only where a shape is weighed
+
     films, bodies = [part.mesh.triangles for part in shape.films], [p.mesh for p in shape.parts if not p.is_film]
     if film_mass > 0 and not films:
         raise ValueError("the shape has no film to hold this mass")

@@ -68,7 +68,7 @@ def arc(run: Run, row: int, start: np.ndarray, gap: float, frame: Frame) -> np.n
     """
     e = run.elements
     a, eccentricity = float(e.semi_major_axis[row]), float(e.eccentricity[row])
-    if not (eccentricity < 1 and a > 0):
+    if not (eccentricity < 1 and 0 < a < np.inf):
         return np.zeros((0, 3))
     radial, ahead = rtn(run.position[row], run.velocity[row])[:, :2].T
     behind = np.mod(np.arctan2(-start @ ahead, start @ radial), 2 * np.pi)

@@ -93,7 +93,7 @@ COARSEST, STEADY = 5e-9, 0.03  # of their dense errors: see bounds
 AIM, CALM = 0.7, 0.3  # error over what is bearable that a new length is to have; below which a length is too short
 PIECES = 4  # of a step, in which its distance from the centre is looked at ahead
 STEEP = 16  # the power of the length with which the error of such steps grows, as measured: at most
-WORST = 1.5  # the largest error that a step within its bounds was seen to make, over them
+WORST = 1.5  # asked over what a step may err by: so calibrated, smooth flights err by 0.1 to 0.9 of what is asked
 ORDER = 9  # of the velocity between the nodes; the position has one more
 POLYNOMIAL = 28  # rows of Integration.work from here on: coefficients of the last step's polynomial in s
 SWEEPS = 9  # place in Integration.counter, after those that all integrators have
@@ -256,7 +256,7 @@ def attempt(s, nodes, t, limit, needs, largest_step, t_end, at_once, varies, bur
         if error < np.inf and turn > 0.0:
             wish = h * max(SHRINK_MOST, (AIM / error) ** (1.0 / STEEP))
         elif error < np.inf:
-            wish = h * growth(nodes, h, error, True)
+            wish = h * growth(error)
         else:
             wish = 0.3 * h  # leave a singular spot slowly; give up when even a tiny step is not finite
             if wish <= 4.0e-14 * smallest:
@@ -269,7 +269,7 @@ def attempt(s, nodes, t, limit, needs, largest_step, t_end, at_once, varies, bur
         nodes[LAST_ERROR] = 0.0
         count[STEPS] += 1
         return h, landing
-    grown = h * growth(nodes, h, error, rejected)
+    grown = h * growth(error)
     # a step cut short by a landing must not shorten the next one
     clock[STEP] = max(grown, wish) if landing and not rejected else grown
     nodes[LAST_STEP], nodes[LAST_ERROR] = h, error
@@ -359,13 +359,13 @@ def bounds(y, mu, tolerance, span, careful):
             dense = min(min(wanted, COARSEST), STEADY * np.sqrt(wanted / turned))
             return r, dense * speed, max(agreed, 1e-17) * r, 2.0 * np.pi * span / turned
     small = np.sqrt(wanted / (turned * turned * near * near * near))
-    dense = min(wanted, small * np.sqrt(np.sqrt(small)))  # 60 dense^1.6 each turn
+    dense = min(wanted, small * np.sqrt(np.sqrt(small)))  # the square of small to the power 1 / 1.6
     return r, dense * speed, max(agreed, 2e-17) * r, 0.0  # less would be hidden by rounding
 
 
 @inlined
-def growth(nodes, h, error, rejected):
-    """By how much the next step may be longer, from the error of this one and how it has changed since the last."""
+def growth(error):
+    """By how much a step like this one, with its error over what is bearable, may be longer."""
     if not error > 0.0:
         return GROW_MOST
     grow = SAFETY * error ** (-1.0 / ORDER)

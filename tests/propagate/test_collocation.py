@@ -137,6 +137,16 @@ def test_the_error_is_between_a_tenth_and_all_of_what_is_asked(name, tolerance):
     assert 0.1 * tolerance <= errs(states, exact(times)) <= tolerance
 
 
+@pytest.mark.parametrize("e", [0.1, 0.3, 0.6, 0.8])
+def test_few_steps_on_an_ellipse_are_refused(e):
+    """Steps are as long as the distance that they will come to allows; without looking ahead 11 to 37 % are refused."""
+    start, _ = ellipse(e)
+    times = np.linspace(0.0, 3 * TURN * (1 - e) ** -1.5, 101)
+    flights = [flown(dynamics.model(1.0), *start, times, asked)[1] for asked in (1e-6, 1e-9, 1e-12)]
+    accepted, refused = np.sum([collocation.statistics(s) for s in flights], axis=0)
+    assert refused < 0.1 * accepted
+
+
 def test_a_sail_of_real_film_agrees_with_scipy():
     """Out of the plane on an ellipse; SciPy's own error is 1e-11 or so."""
     film, lightness = (0.0864, 0.8272, -0.0055), 0.05 / 0.9081

@@ -57,3 +57,13 @@ class Silent:
         pass
 
     log_columns = log_static
+
+
+def test_of_a_vector_that_is_asked_for_what_is_rounding_is_not_shown(runs, tmp_path):
+    run = runs.displaced(rows=60)
+    turn = np.linspace(0.0, 20.0, 60)
+    columns = {"light_torque_x_N_m": 1e-19 * np.sin(turn), "light_torque_y_N_m": 1e-6 * np.cos(turn)}
+    setting = replace(run.setting, plots=("light_torque",))
+    record(replace(run, environment=columns, setting=setting), tmp_path / "torques.rrd")
+    shown = [name for name in read(tmp_path / "torques.rrd").entities if name.startswith("/plots/light_torque")]
+    assert shown == ["/plots/light_torque_y_N_m"]

@@ -16,7 +16,7 @@ import signal
 import threading
 from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from time import perf_counter
 from types import FrameType
@@ -111,10 +111,8 @@ class Effort:
     @contextmanager
     def stoppable(self) -> Iterator[None]:
         """Go on behind the body once the search is to end: `stopped` tells whether it came so far."""
-        try:
+        with suppress(Stopped):
             yield
-        except Stopped:
-            pass
 
     @contextmanager
     def listening(self) -> Iterator[None]:

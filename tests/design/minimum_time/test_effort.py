@@ -28,16 +28,24 @@ def test_a_search_ends_with_its_time_and_says_so():
 @pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to one process")
 def test_the_first_ctrl_c_keeps_what_was_found_and_the_second_is_heard_as_ever():
     effort, before = Effort(), signal.getsignal(signal.SIGINT)
-    with pytest.raises(KeyboardInterrupt), effort.listening():
-        with effort.stoppable():
-            os.kill(os.getpid(), signal.SIGINT)
-            for _ in range(1000):
-                effort.check()
-                time.sleep(1e-3)
-        assert effort.stopped == INTERRUPTED
-        os.kill(os.getpid(), signal.SIGINT)
-        time.sleep(1.0)
+
+    def pressed_twice():
+        with effort.listening():
+            with effort.stoppable():
+                _press_ctrl_c(effort.check)
+            assert effort.stopped == INTERRUPTED
+            _press_ctrl_c(lambda: None)
+
+    with pytest.raises(KeyboardInterrupt):
+        pressed_twice()
     assert signal.getsignal(signal.SIGINT) is before
+
+
+def _press_ctrl_c(work):
+    os.kill(os.getpid(), signal.SIGINT)
+    for _ in range(1000):
+        work()
+        time.sleep(1e-3)
 
 
 def test_what_was_tried_is_counted_over_threads_and_told_in_words():

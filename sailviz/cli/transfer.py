@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-import math
 import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -15,13 +14,12 @@ from sailviz.cli.numbers import Number
 from sailviz.cli.outputs import file_at
 from sailviz.cli.shared import BAD_INPUT, EXPECTATION_FAILED, progress_bar, say_if_compiling, tell
 from sailviz.cli.transfer_in_words import summary, words
-from sailviz.constants import AU, DAY
+from sailviz.cli.transfer_question import Question, question_options
+from sailviz.constants import DAY
 from sailviz.errors import OutputError
 from sailviz.files import write_text
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from sailviz.transfers import Place
 
 TABLE_MM_S2 = (2.0, 1.5, 1.0, 0.75, 0.5, 0.35, 0.25)
@@ -47,25 +45,7 @@ TABLE_MM_S2 = (2.0, 1.5, 1.0, 0.75, 0.5, 0.35, 0.25)
     metavar="MM_S2",
     help="At 1 au, in mm/s².",
 )
-@click.option("--orbits", is_flag=True, help="In space, between the planets' elliptic orbits, both anomalies free.")
-@click.option("--date", metavar="DATE", help="Meet the planet itself, leaving on this date, e.g. 2030-01-01.")
-@click.option(
-    "--window",
-    type=Number(0, 36525, "days", above=True),
-    metavar="DAYS",
-    help="With --date: leave on the best day of so many.",
-)
-@click.option("--dates", type=click.IntRange(2, 400), default=41, show_default=True, help="Of a window, looked at.")
-@click.option(
-    "--radius-au", type=Number(0, 1e3, "au", above=True), metavar="AU", help="To a circle of this radius instead of TO."
-)
-@click.option(
-    "--inclination-deg",
-    type=Number(-180, 180, "degrees"),
-    metavar="DEG",
-    help="Of the circle aimed at, to the ecliptic.",
-)
-@click.option("--starts", type=click.IntRange(1, 200), help="Departure points tried with --orbits (24).")
+@question_options
 @click.option("--table", "as_table", is_flag=True, help="Flight times over the acceleration, between circles.")
 @click.option("-o", "--output", metavar="FILE", help="Write the flight as a scene that sailviz run flies.")
 @click.option(
@@ -82,18 +62,12 @@ def transfer(
     target: str | None,
     sails: tuple[str, ...],
     acceleration: float,
-    orbits: bool,
-    date: str | None,
-    window: float | None,
-    dates: int,
-    radius_au: float | None,
-    inclination_deg: float | None,
-    starts: int | None,
     as_table: bool,
     output: str | None,
     form: str,
     as_json: bool,
     quiet: bool,
+    **options: Any,
 ) -> None:
     """Find the fastest flight of a sail from one orbit to another, and how it must be steered.
 
@@ -101,23 +75,23 @@ def transfer(
     where no flight was found; the nearest one is then told.
     """
     sails = sails or ("ideal",)
+    asked = Question.taken(options)
     try:
-        _agree(target, radius_au, inclination_deg, orbits, date, window, sails, as_table, output)
+        asked.check(target, sails, as_table, output)
         if output is not None and output != "-":
             file_at(output, "scene")
         from sailviz.transfers import find, place, scene_of
 
         say_if_compiling(quiet or as_json)
-        start = place(origin)
-        end = _aim(target, radius_au, inclination_deg)
+        start, aim = place(origin), asked.aim(target)
         if as_table:
-            _table(start, end, sails, quiet, as_json)
+            _table(start, aim, sails, quiet, as_json)
             return
-        departure = None if date is None else _first(date) if window is None else _window(date, window)
-        with _progress(f"{start.name} to {end.name}", quiet or as_json) as progress:
+        with _progress(f"{start.name} to {aim.name}", quiet or as_json) as progress:
             found = find(
-                start, end, sails[0], acceleration * 1e-3,
-                orbits=orbits, departure=departure, starts=starts, dates=dates, progress=progress,
+                start, aim, sails[0], acceleration * 1e-3,
+                orbits=asked.orbits, departure=asked.departure, starts=asked.starts, dates=asked.dates,
+                progress=progress,
             )  # fmt: skip
         text = scene_of(found, form) if output is not None and found.flight.feasible else None
     except (ValueError, OutputError) as error:
@@ -133,60 +107,6 @@ def transfer(
         raise click.exceptions.Exit(EXPECTATION_FAILED)
     if output is not None and text is not None:
         _write(output, text, quiet or as_json)
-
-
-def _agree(
-    target: str | None,
-    radius_au: float | None,
-    inclination_deg: float | None,
-    orbits: bool,
-    date: str | None,
-    window: float | None,
-    sails: Sequence[str],
-    as_table: bool,
-    output: str | None,
-) -> None:
-    """ValueError for what does not go together."""
-    if (target is None) == (radius_au is None):
-        raise ValueError("Say where to: a planet, or a circle by --radius-au.")
-    if inclination_deg is not None and radius_au is None:
-        raise ValueError("--inclination-deg is that of a circle: give --radius-au with it.")
-    if date is not None and (orbits or radius_au is not None):
-        raise ValueError("--date meets a planet where it is: neither --orbits nor --radius-au go with it.")
-    if window is not None and date is None:
-        raise ValueError("--window counts its days from a --date.")
-    if as_table and (orbits or date or output is not None or inclination_deg):
-        raise ValueError("--table shows flights between circles: no --orbits, --date, --inclination-deg or -o.")
-    if len(sails) > 1 and not as_table:
-        raise ValueError("Several sails are compared with --table.")
-
-
-def _aim(target: str | None, radius_au: float | None, inclination_deg: float | None) -> Place:
-    from sailviz.transfers import circle, place
-
-    if target is not None:
-        return place(target)
-    assert radius_au is not None, "_agree has seen that there is one of the two"
-    return circle(radius_au * AU, math.radians(inclination_deg or 0.0))
-
-
-def _first(date: str) -> np.datetime64:
-    """The day of a departure, UTC. ValueError for what is no date."""
-    from sailviz.run.dates import epoch_of
-
-    try:
-        found = epoch_of(date)
-    except ValueError as error:
-        raise ValueError(f"--date: {error}: write 2030-01-01.") from None
-    assert found is not None, "only None has no date"
-    return found
-
-
-def _window(date: str, days: float) -> tuple[np.datetime64, np.datetime64]:
-    import numpy as np
-
-    first = _first(date)
-    return first, first + np.timedelta64(round(days * DAY), "s")
 
 
 @contextmanager

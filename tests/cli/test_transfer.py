@@ -53,3 +53,10 @@ def test_bad_questions_are_answered_in_a_sentence(words, answer):
     said = ask(*words)
     assert said.exit_code == 2
     assert answer in said.output
+
+
+def test_all_that_does_not_go_together_is_told_at_once():
+    said = ask("earth", "--window", 10, "--inclination-deg", 5, "--sail", "ideal", "--sail", "jpl-2015")
+    assert said.exit_code == 2
+    for answer in ("Say where to", "--inclination-deg is that", "--window counts", "Several sails"):
+        assert answer in said.output

@@ -1,0 +1,123 @@
+"""What `sailviz transfer` may be asked: its options, the question they make, and what in it does not go together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from sailviz.cli.numbers import Number
+from sailviz.constants import AU, DAY
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from sailviz.transfers import Place
+
+_WHITHER = (
+    click.option("--orbits", is_flag=True, help="In space, between the planets' elliptic orbits, both anomalies free."),
+    click.option("--date", metavar="DATE", help="Meet the planet itself, leaving on this date, e.g. 2030-01-01."),
+    click.option(
+        "--window",
+        type=Number(0, 36525, "days", above=True),
+        metavar="DAYS",
+        help="With --date: leave on the best day of so many.",
+    ),
+    click.option("--dates", type=click.IntRange(2, 400), default=41, show_default=True, help="Of a window, looked at."),
+    click.option(
+        "--radius-au",
+        type=Number(0, 1e3, "au", above=True),
+        metavar="AU",
+        help="To a circle of this radius instead of TO.",
+    ),
+    click.option(
+        "--inclination-deg",
+        type=Number(-180, 180, "degrees"),
+        metavar="DEG",
+        help="Of the circle aimed at, to the ecliptic.",
+    ),
+    click.option("--starts", type=click.IntRange(1, 200), help="Departure points tried with --orbits (24)."),
+)
+
+
+def question_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """The options of a Question."""
+    for option in reversed(_WHITHER):
+        command = option(command)
+    return command
+
+
+@dataclass(frozen=True)
+class Question:
+    """Where to and how, as it was said at the shell."""
+
+    orbits: bool
+    date: str | None
+    window: float | None
+    dates: int
+    radius_au: float | None
+    inclination_deg: float | None
+    starts: int | None
+
+    @classmethod
+    def taken(cls, options: dict[str, Any]) -> Question:
+        """The question out of a command's options, which keep what is none of it."""
+        return cls(**{one.name: options.pop(one.name) for one in fields(cls)})
+
+    def check(self, target: str | None, sails: tuple[str, ...], as_table: bool, output: str | None) -> None:
+        """ValueError for whatever does not go together, one sentence a line."""
+        faults = [*self._about_the_aim(target), *self._about_the_date(), *self._about_tables(sails, as_table, output)]
+        if faults:
+            raise ValueError("\n".join(faults))
+
+    def _about_the_aim(self, target: str | None) -> Iterator[str]:
+        if (target is None) == (self.radius_au is None):
+            yield "Say where to: a planet, or a circle by --radius-au."
+        if self.inclination_deg is not None and self.radius_au is None:
+            yield "--inclination-deg is that of a circle: give --radius-au with it."
+
+    def _about_the_date(self) -> Iterator[str]:
+        if self.date is not None and (self.orbits or self.radius_au is not None):
+            yield "--date meets a planet where it is: neither --orbits nor --radius-au go with it."
+        if self.window is not None and self.date is None:
+            yield "--window counts its days from a --date."
+
+    def _about_tables(self, sails: tuple[str, ...], as_table: bool, output: str | None) -> Iterator[str]:
+        if as_table and (self.orbits or self.date or output is not None or self.inclination_deg):
+            yield "--table shows flights between circles: no --orbits, --date, --inclination-deg or -o."
+        if len(sails) > 1 and not as_table:
+            yield "Several sails are compared with --table."
+
+    def aim(self, target: str | None) -> Place:
+        """The place aimed at."""
+        from sailviz.transfers import circle, place
+
+        if target is not None:
+            return place(target)
+        assert self.radius_au is not None, "check has seen that there is one of the two"
+        return circle(self.radius_au * AU, math.radians(self.inclination_deg or 0.0))
+
+    @property
+    def departure(self) -> np.datetime64 | tuple[np.datetime64, np.datetime64] | None:
+        """The date, or the first and the last; ValueError for what is none."""
+        if self.date is None:
+            return None
+        import numpy as np
+
+        first = _day(self.date)
+        return first if self.window is None else (first, first + np.timedelta64(round(self.window * DAY), "s"))
+
+
+def _day(date: str) -> np.datetime64:
+    """The day of a departure, UTC. ValueError for what is no date."""
+    from sailviz.run.dates import epoch_of
+
+    try:
+        found = epoch_of(date)
+    except ValueError as error:
+        raise ValueError(f"--date: {error}: write 2030-01-01.") from None
+    assert found is not None, "only None has no date"
+    return found

@@ -187,7 +187,7 @@ def _smooth(h, f_r, f_t, c, s, eps):
 @inlined
 def steer(device, p, at, c, s, eps):
     """(cos alpha, sin alpha, h, f_r, f_t) of the sail of parameters p[at:] for a primer at the angle of cosine c and
-    sine s >= 0 from r_hat. eps rounds the switching off; 0 is the true law.
+    sine s >= 0 from r_hat. eps rounds the switching off; 0 is the true law; below 0 an E-sail is never switched off.
 
     Off is h = f_r = f_t = 0: a film then stands edge-on, an E-sail keeps the pitch it would thrust with.
     """
@@ -221,7 +221,7 @@ def steer(device, p, at, c, s, eps):
         h = c * f_r + s * f_t
     if eps > 0.0:
         h, f_r, f_t = _smooth(h, f_r, f_t, c, s, eps)
-    elif h <= 0.0:
+    elif h <= 0.0 and eps == 0.0:
         h, f_r, f_t = 0.0, 0.0, 0.0
     return along, across, h, f_r, f_t
 

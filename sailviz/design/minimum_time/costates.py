@@ -134,11 +134,14 @@ def _up_to_switch(y, kind, p, eps, h, k, w, new, before, after, span):
 
 @called
 def _propagate(start, span, kind, p, eps, tolerance, t_out, out, switches, end, work):
-    """`propagate` without its arrays made: out (n, 12), switches (k,), end (12,) are filled; work (WORK, 12).
+    """`propagate` without its arrays made: out (n, 12), switches (k,), end (12,) are filled; work (WORK, 12). Into the
+    past where the span is negative, and then without switches.
 
     Returns (status, time reached, steps, number of switches, H at the start, largest |H - H(0)|).
     """
     k, m, w, y, new = work[:16], work[16:24], work[24], work[25], work[26]
+    sense = -1.0 if span < 0.0 else 1.0
+    span = abs(span)
     for j in range(SIZE):
         y[j] = start[j]
     support, hamiltonian = right_hand_side(y, kind, p, eps, k[0])
@@ -161,8 +164,8 @@ def _propagate(start, span, kind, p, eps, tolerance, t_out, out, switches, end, 
             status = UNDERFLOW
             break
         steps += 1
-        error, after = _step(y, kind, p, eps, h, k, w, new)
-        switching = eps == 0.0 and (after > 0.0) != (support > 0.0)
+        error, after = _step(y, kind, p, eps, sense * h, k, w, new)
+        switching = eps == 0.0 and sense > 0.0 and (after > 0.0) != (support > 0.0)
         if switching:
             error, after, high = _up_to_switch(y, kind, p, eps, h, k, w, new, support, after, span)
             landing, h = landing and high == h, high
@@ -174,7 +177,7 @@ def _propagate(start, span, kind, p, eps, tolerance, t_out, out, switches, end, 
         grow = GROW_MOST if error == 0.0 else min(GROW_MOST, max(SHRINK_MOST, SAFETY * error**-0.125))
         t1 = span if landing else t + h
         if row < len(t_out) and t_out[row] <= t1:
-            _interpolant(y, kind, p, eps, h, k, w, new, m)
+            _interpolant(y, kind, p, eps, sense * h, k, w, new, m)
             while row < len(t_out) and t_out[row] <= t1:
                 x = (t_out[row] - t) / h
                 for j in range(SIZE):

@@ -17,6 +17,7 @@ from sailviz.design.minimum_time.boundary_conditions import (
 )
 from sailviz.design.minimum_time.costates import Flight, propagate
 from sailviz.design.minimum_time.search import Extremal, Search
+from sailviz.design.minimum_time.singular_arcs import Arc, fly, throttle_of_arcs
 from sailviz.design.minimum_time.state_costate import (
     COSTATES,
     LAM_V,
@@ -67,7 +68,7 @@ def time_unit(radius: float) -> float:
 @dataclass(frozen=True)
 class Trajectory:
     """A transfer in time: time (n,) s; position (n, 3) m and velocity (n, 3) m/s, planar, departure on the x axis of a
-    circle; primer (n, 3) unit vectors; pitch (n,) rad in the direction of the primer's side; on (n,)."""
+    circle; primer (n, 3) unit vectors; pitch (n,) rad in the direction of the primer's side; on (n,); throttle (n,)."""
 
     time: np.ndarray
     position: np.ndarray
@@ -75,6 +76,7 @@ class Trajectory:
     primer: np.ndarray
     pitch: np.ndarray
     on: np.ndarray
+    throttle: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,9 @@ class Transfer:
     way; solutions: number of distinct extremals found, solution_times (solutions,) s of each; switches (k,) s where
     the thrust goes on or off; closest: distance from the Sun m, the smallest on the way; departure_anomaly and
     arrival_anomaly rad on ellipses; starts: rough flights that were finished, and of them converged.
+
+    Of an electric sail whose fastest flight uses partial voltage: its arcs, and the lowest and highest throttle on
+    those that are singular. switches are then where one arc follows another.
     """
 
     device: Film | str
@@ -108,12 +113,20 @@ class Transfer:
     departure_anomaly: float = np.nan
     arrival_anomaly: float = np.nan
     start: np.ndarray | None = None  # (12,) state and costates, canonical
+    arcs: tuple[Arc, ...] = ()
+    throttle: tuple[float, float] | None = None
 
     @property
     def claim(self) -> str:
         """What is known of the flight time, in one sentence."""
         if not self.feasible:
             return self.reason
+        if self.arcs:
+            ways = "the only flight" if self.solutions == 1 else f"the fastest of {self.solutions} flights"
+            return (
+                f"Best found: {self.time / DAY:.4f} d, {ways} of those followed from near circles, {self.starts} in "
+                "all, that arrived; that none is faster is likely, not proven."
+            )
         others = "the only extremal" if self.solutions == 1 else f"the fastest of {self.solutions} extremals"
         return (
             f"Best found: {self.time / DAY:.4f} d, {others} that {self.starts} starts led to "
@@ -127,18 +140,23 @@ class Transfer:
         unit = time_unit(self.initial_radius)
         sail = sail_from(self.device, self.characteristic_acceleration, self.initial_radius)
         span = self.time / unit
-        rows = propagate(self.start, span, sail, times=np.linspace(0.0, span, samples)).rows
+        times = np.linspace(0.0, span, samples)
+        rows = fly(self.start, span, sail, [(arc.kind, (arc.end - arc.start) / unit) for arc in self.arcs], times).rows
         r_hat = rows[:, POSITION] / np.linalg.norm(rows[:, POSITION], axis=1)[:, None]
         primer = rows[:, LAM_V] / np.linalg.norm(rows[:, LAM_V], axis=1)[:, None]
         across = r_hat[:, X] * primer[:, Y] - r_hat[:, Y] * primer[:, X]
         steered = optimal_pitch(np.arctan2(across, np.sum(r_hat * primer, axis=1)), self.device)
+        throttle = steered.on.astype(float)
+        if self.arcs:
+            throttle = throttle_of_arcs(rows, times * unit, self.arcs, sail)
         return Trajectory(
             np.linspace(0.0, self.time, samples),
             rows[:, POSITION] * self.initial_radius,
             rows[:, VELOCITY] * self.initial_radius / unit,
             primer,
             steered.pitch,
-            steered.on,
+            throttle > 0,
+            throttle,
         )
 
 

@@ -20,6 +20,7 @@ from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
 from sailviz.propulsion.devices import ELECTRIC_SAIL, sail
 from sailviz.propulsion.solar_sail import Film
 from sailviz.steering.optimal import full_thrust, optimal_pitch, steer
+from sailviz.steering.singular import switching_rates
 
 TIME_UNIT = np.sqrt(AU**3 / MU_SUN)  # s, 58.13 d
 SPEED_UNIT = AU / TIME_UNIT  # m/s, 29.78 km/s
@@ -30,6 +31,7 @@ SIZE = 12
 STATE, COSTATES = slice(X, LRX), slice(LRX, SIZE)
 POSITION, VELOCITY, LAM_R, LAM_V = slice(X, VX), slice(VX, LRX), slice(LRX, LVX), slice(LVX, SIZE)
 
+THRUST, COAST, SINGULAR = -1.0, -2.0, -3.0  # in the place of eps: an E-sail's arc, inside which nothing switches
 SWITCH, OWN = 0, 1  # places in the parameters of a Sail: of the cosine at which it switches, of the sail's own numbers
 NEVER = -2.0  # a cosine beyond reach
 
@@ -70,7 +72,8 @@ def canonical_sail(device: Film | str, characteristic_acceleration: float) -> Sa
 def right_hand_side(y, kind, p, eps, out):
     """out (12,) = dy/dt of state and costates y (12,). Returns (switching function, H).
 
-    kind, p : of a Sail. The switching function is positive where the sail thrusts; eps rounds the switch off.
+    kind, p : of a Sail. The switching function is positive where the sail thrusts; eps rounds the switch off, or is the
+    arc that an E-sail flies: at full thrust, without, or with the share of it that keeps the switching function at 0.
     """
     x, yy, z = y[X], y[Y], y[Z]
     lx, ly, lz = y[LVX], y[LVY], y[LVZ]
@@ -90,6 +93,17 @@ def right_hand_side(y, kind, p, eps, out):
         tx, ty, tz = wx / across, wy / across, wz / across
     _, _, h, fr, ft = steer(kind, p, OWN, c, s, eps)
     strength, exponent = full_thrust(kind, p, OWN, r, 1.0)
+    if eps < 0.0:
+        share = 1.0
+        if eps == COAST:
+            share = 0.0
+        elif eps == SINGULAR:
+            _, drift, gain = switching_rates(
+                x, yy, z, y[VX], y[VY], y[VZ], lx, ly, lz, y[LRX], y[LRY], y[LRZ],
+                r, size, 1.0, p[SWITCH], strength, exponent, c, s, fr, ft,
+            )  # fmt: skip
+            share = -drift / gain
+        strength *= share
     ar, at = strength * fr, strength * ft
     out[X], out[Y], out[Z] = y[VX], y[VY], y[VZ]
     out[VX] = ar * ux + at * tx - x * inverse3

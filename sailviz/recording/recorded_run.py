@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -93,7 +94,7 @@ def setting_of(recording: Recording, time: np.ndarray) -> Setting:
         look_for=(),
         thesis="",
         body=body,
-        craft=craft_of(facts),
+        craft=craft_of(facts, recording.resolved),
         duration=float(time[-1] - time[0]),
         rows=len(time),
         epoch=epoch,
@@ -117,14 +118,17 @@ def phases_of(facts: Mapping[str, np.ndarray]) -> tuple[Phase, ...]:
     return tuple(Phase(str(n), start, end, str(w)) for n, (start, end), w in zip(names, spans, words, strict=True))
 
 
-def craft_of(facts: Mapping[str, np.ndarray]) -> Craft:
-    """What flew, by /scene."""
+def craft_of(facts: Mapping[str, np.ndarray], resolved: Mapping[str, Any]) -> Craft:
+    """What flew, by /scene and the values of the scene that was flown."""
     kind = str(facts["craft_kind"][0])
     sizes = {name: facts.get(f"craft_{name}") for name in ("side_m", "tethers", "tether_length_m")}
     side, tethers, length = (None if size is None else float(size[0]) for size in sizes.values())
     shape = str(facts["craft_shape"][0]) if "craft_shape" in facts else ""
     count = None if tethers is None else int(tethers)
-    return Craft(kind, LABELS.get(kind, "Spacecraft"), side, count, length, shape=shape)
+    device = resolved.get("device")
+    wheel = (device.get("wheel") if isinstance(device, Mapping) else None) or {}
+    bend = {"cone": float(wheel.get("cone") or 0.0), "rise": float(wheel.get("rise") or 0.0)}
+    return Craft(kind, LABELS.get(kind, "Spacecraft"), side, count, length, shape=shape, **bend)
 
 
 def drawn_run_of(recording: Recording) -> Run:

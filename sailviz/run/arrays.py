@@ -43,6 +43,8 @@ class Craft:
     tethers: int | None = None
     tether_length: float | None = None
     spin: str = ""  # of a tether that spins: the plane in which, "along-track" or "across-track"
+    cone: float = 0.0  # rad, by which the straight tethers of a wheel stand downwind of the plane of their hub
+    rise: float = 0.0  # of one whose tethers are parabolas: how far downwind their tips are, over their reach
     parts: tuple[CraftPart, ...] = field(default=(), compare=False, repr=False)  # of a sail with a shape, its mesh
     # of such a sail, what tells the pressure of light on its facets, part after part: directions of the light (n, 3) in
     # body axes -> (n, k) over twice the radiation pressure, 0 in the shade

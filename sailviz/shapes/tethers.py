@@ -16,10 +16,27 @@ def spokes(count: int) -> np.ndarray:
     return np.stack([np.cos(angle), np.sin(angle), 0 * angle], 1)
 
 
-def spoke_quaternions(count: int) -> np.ndarray:
-    """Rotations about z that lay the x axis along the tethers, xyzw (count, 4)."""
-    half = np.linspace(0, np.pi, count, endpoint=False)
-    return np.stack([0 * half, 0 * half, np.sin(half), np.cos(half)], 1)
+def spoke_quaternions(count: int, slope: float = 0.0) -> np.ndarray:
+    """Rotations that lay the x axis along the tethers, xyzw (count, 4). slope : rad, of the tethers over the plane."""
+    half, up = np.linspace(0, np.pi, count, endpoint=False), -0.5 * slope
+    turn = [-np.sin(half) * np.sin(up), np.cos(half) * np.sin(up), np.sin(half) * np.cos(up), np.cos(half) * np.cos(up)]
+    return np.stack(turn, 1)
+
+
+def bent(cone: float, rise: float, start: float = 0.0) -> np.ndarray:
+    """A tether of length 1 in its own plane, outwards and downwind from the hub, or from a share `start` of its reach
+    on: straight at a cone angle, rad, or a parabola of a rise over its reach. (k, 2)"""
+    if rise == 0:
+        return np.outer([start, 1.0], [np.cos(cone), np.sin(cone)])
+    slope = 2 * rise  # at the tip
+    length = 0.5 * np.hypot(1, slope) + 0.5 * np.arcsinh(slope) / slope  # of an arc of reach 1
+    out = np.linspace(start, 1, 13)
+    return np.stack([out, rise * out**2], 1) / length
+
+
+def round_hub(profile: np.ndarray, out: np.ndarray) -> np.ndarray:
+    """Points (n, k, 3) of tethers like a profile (k, 2) in directions (n, 3) of the plane."""
+    return profile[:, :1] * out[:, None] + profile[:, 1:] * np.array([0.0, 0.0, 1.0])
 
 
 def wheel_hub() -> Trimesh:

@@ -178,7 +178,8 @@ def _electric_name(device: ElectricSail) -> str:
 
 
 def _electric_size(device: ElectricSail) -> dict[str, Any]:
-    return {"tethers": device.tethers, "tether_length": device.tether_length}
+    bend = {} if device.wheel is None else {"cone": device.wheel.cone, "rise": device.wheel.rise or 0.0}
+    return {"tethers": device.tethers, "tether_length": device.tether_length, **bend}
 
 
 # ---------------------------------------------------------------- thruster

@@ -3,20 +3,24 @@
 import numpy as np
 import pytest
 
+from sailviz.frames import rotation
 from sailviz.shapes import tethers
 
 
-def turned_x(quaternions):
-    """The x axis turned by rotations about z, xyzw."""
-    z, w = quaternions[:, 2], quaternions[:, 3]
-    return np.stack([w**2 - z**2, 2 * z * w, 0 * z], 1)
-
-
-@pytest.mark.parametrize("count", [16, 24])
-def test_the_turns_of_a_wheel_lay_the_x_axis_along_its_tethers(count):
+@pytest.mark.parametrize(("count", "slope"), [(16, 0.0), (24, 0.0), (24, 0.3)])
+def test_the_turns_of_a_wheel_lay_the_x_axis_along_its_tethers(count, slope):
     out = tethers.spokes(count)
-    assert np.allclose(turned_x(tethers.spoke_quaternions(count)), out)
+    along = np.cos(slope) * out + [0.0, 0.0, np.sin(slope)]
+    assert np.allclose(rotation(tethers.spoke_quaternions(count, slope))[..., 0], along)
     assert np.allclose(out.sum(axis=0), 0)
+
+
+@pytest.mark.parametrize(("cone", "rise"), [(0.0, 0.0), (0.05, 0.0), (0.0, 0.02), (0.0, 0.8)])
+def test_a_bent_tether_is_as_long_as_a_straight_one(cone, rise):
+    pieces = np.diff(tethers.bent(cone, rise), axis=0)
+    assert np.linalg.norm(pieces, axis=1).sum() == pytest.approx(1.0, abs=1e-3)  # chords of an arc
+    reach, depth = tethers.bent(cone, rise)[-1]
+    assert depth / reach == pytest.approx(rise or np.tan(cone))
 
 
 def test_the_nozzle_of_a_thruster_opens_against_the_thrust():

@@ -18,7 +18,7 @@ from sailviz.recording.drawing.log import Picture, f4
 from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Craft, CraftPart
 from sailviz.shapes import sails, tethers
-from sailviz.shapes.primitives import Trimesh, circle, disc, flat_sided, joined
+from sailviz.shapes.primitives import Trimesh, circle, flat_sided, joined, surface_of_revolution
 
 
 def log_square_sail(picture: Picture, path: str, near: bool) -> None:
@@ -53,6 +53,8 @@ OWN_SIZE = 0.12  # in the system view, of a mesh whose craft is else drawn as a 
 def drawing_of(craft: Craft) -> CraftDrawing:
     """How a craft is drawn: as its kind is, or, of one with a shape, as it is."""
     kind = CRAFT[craft.kind]
+    if craft.cone or craft.rise:
+        return replace(kind, log_shape=partial(log_electric_sail, craft.cone, craft.rise))
     if not craft.parts or craft.side is None:
         return kind
     own = partial(log_own_shape, craft.parts, craft.side)
@@ -63,21 +65,26 @@ def drawing_of(craft: Craft) -> CraftDrawing:
     return replace(kind, log_shape=own, size=size, close_size=close, glow=glow, stowable=stowable, stowable_near=())
 
 
-def log_electric_sail(picture: Picture, path: str, near: bool) -> None:
-    """A wheel of tethers with its charged sheath. 24 are drawn, 16 from afar, however many there are."""
+def log_electric_sail(cone: float, rise: float, picture: Picture, path: str, near: bool) -> None:
+    """A wheel of tethers, bent downwind as it is told, with its charged sheath. 24 are drawn, 16 from afar, however
+    many there are."""
     count = 24 if near else 16
-    out, turns = tethers.spokes(count), tethers.spoke_quaternions(count)
-    picture.log_lines(f"{path}/tethers", [[0.03 * d, d] for d in out], style.TETHER, 0.9 if near else 0.7)
-    picture.log_lines(f"{path}/rim", [circle()], style.dim(style.TETHER, 0.7), 0.7 if near else 0.55)
+    out, profile = tethers.spokes(count), tethers.bent(cone, rise)
+    lines, slope = tethers.round_hub(profile, out), float(np.arctan2(*profile[-1, ::-1]))
+    turns, (reach, height) = tethers.spoke_quaternions(count, slope), profile[-1]
+    from_hub = tethers.round_hub(tethers.bent(cone, rise, 0.03), out)
+    picture.log_lines(f"{path}/tethers", list(from_hub), style.TETHER, 0.9 if near else 0.7)
+    rim = reach * circle() + [0.0, 0.0, height]
+    picture.log_lines(f"{path}/rim", [rim], style.dim(style.TETHER, 0.7), 0.7 if near else 0.55)
     picture.log_mesh(f"{path}/hub", tethers.wheel_hub(), style.BUS)
-    picture.log_mesh(f"{path}/disc", disc(0.0, 1.0, 72), style.WHEEL, shaded=False)
+    picture.log_mesh(f"{path}/disc", surface_of_revolution(profile[::-1], 72), style.WHEEL, shaded=False)
     if near:
         picture.log_mesh(f"{path}/tips", tethers.remote_unit(), style.BOOM)
-        picture.log_static(f"{path}/tips", rr.InstancePoses3D(translations=f4(out), quaternions=f4(turns)))
+        picture.log_static(f"{path}/tips", rr.InstancePoses3D(translations=f4(lines[:, -1]), quaternions=f4(turns)))
     picture.log_static(
         f"{path}/sheath",
         rr.GaussianSplats3D(
-            f4(0.52 * out),
+            f4(0.52 * lines[:, -1]),
             scales=[[0.21, 0.008, 0.008]] * count,
             quaternions=f4(turns),
             colors=[[*style.SHEATH, 120]] * count,
@@ -127,7 +134,7 @@ CRAFT = {
         flow_word="sunlight",
     ),
     "electric-sail": CraftDrawing(
-        log_shape=log_electric_sail,
+        log_shape=partial(log_electric_sail, 0.0, 0.0),
         size=0.13,
         close_size=6.5,
         true_size=lambda craft: craft.tether_length,

@@ -11,8 +11,8 @@ from sailviz.recording.drawing.log import Picture, f4
 from sailviz.recording.drawing.near import is_given
 from sailviz.recording.drawing.samples import TURNS
 from sailviz.recording.drawing.story import Story
-from sailviz.shapes import sails
-from sailviz.shapes.primitives import circle, disc
+from sailviz.shapes import sails, tethers
+from sailviz.shapes.primitives import circle, surface_of_revolution
 
 COUNT, MANY = 12, 14  # up to three turns, and above
 HALF = 0.5  # of the craft's own size
@@ -69,10 +69,13 @@ def log_ghosts(picture: Picture, story: Story, size: float) -> None:
             picture.log_mesh(f"/world/ghosts/{name}", film, style.dim(color, style.GHOST), side=side)
             picture.log_static(f"/world/ghosts/{name}", poses)
         return
-    turn = np.pi * np.arange(SPOKES) / SPOKES
-    out = np.stack([np.cos(turn), np.sin(turn), 0 * turn], 1)
-    flat = [circle(49), *(np.stack([-d, d]) for d in out)]
-    lines = [at + small * line @ frame.T for at, frame in zip(place, axes, strict=True) for line in flat]
+    craft = story.setting.craft
+    profile = tethers.bent(craft.cone, craft.rise)
+    spokes = tethers.round_hub(profile, tethers.spokes(2 * SPOKES))
+    across = [np.concatenate([spokes[k, :0:-1], spokes[k + SPOKES]]) for k in range(SPOKES)]
+    wheel = [profile[-1, 0] * circle(49) + [0.0, 0.0, profile[-1, 1]], *across]
+    lines = [at + small * line @ frame.T for at, frame in zip(place, axes, strict=True) for line in wheel]
     picture.log_lines("/world/ghosts/wheels", lines, style.GHOST_WHEEL, style.WIDTH["ghost"])
-    picture.log_mesh("/world/ghosts/discs", disc(0.0, 1.0, 40), style.GHOST_DISC, shaded=False)
+    surface = surface_of_revolution(profile[::-1], 40)
+    picture.log_mesh("/world/ghosts/discs", surface, style.GHOST_DISC, shaded=False)
     picture.log_static("/world/ghosts/discs", poses)

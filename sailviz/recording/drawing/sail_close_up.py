@@ -241,7 +241,8 @@ def eye_of(story: Story) -> np.ndarray:
 
 def places_in_sight(story: Story, push: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     """What must be seen, (k, 3)."""
-    some, size = story.moments, 0.65 * story.craft.close_size
+    some = story.moments
+    size = (1.02 if story.craft.slanted else 0.65) * story.craft.close_size  # of a wheel that is the radius
     axes = story.near.body[some]
     corners = [side * size * axes[..., k] for side in (-1, 1) for k in (0, 1)]
     rays = np.array([[-RAY, 2.0, 2.0], [-RAY, -2.0, -2.0]])

@@ -163,29 +163,71 @@ def seams(f, entity):
     flat(f, entity, 0.08, (0.6, 0.75))
 
 
+def wheel_of(f) -> dict:
+    """What a scene tells of a wheel that is a body."""
+    device = f.truth.resolved.get("device")
+    return (device.get("wheel") if isinstance(device, dict) else None) or {}
+
+
+def downwind(f, reach) -> np.ndarray:
+    """How far downwind of its hub a wheel is, like reach, both over the length of a tether: not at all, by its cone
+    angle, or as a parabola."""
+    wheel = wheel_of(f)
+    if not wheel.get("rise"):
+        return np.tan(wheel.get("cone", 0.0)) * reach
+    x = np.linspace(0, 1, 20001)
+    length = np.trapezoid(np.hypot(1, 2 * wheel["rise"] * x), x)
+    return wheel["rise"] * length * np.asarray(reach) ** 2
+
+
+def rim_of(f) -> tuple[float, float]:
+    """Radius of the rim and how far downwind it is, over the length of a tether."""
+    wheel = wheel_of(f)
+    if not wheel.get("rise"):
+        return float(np.cos(wheel.get("cone", 0.0))), float(np.sin(wheel.get("cone", 0.0)))
+    x = np.linspace(0, 1, 20001)
+    reach = 1 / np.trapezoid(np.hypot(1, 2 * wheel["rise"] * x), x)
+    return reach, wheel["rise"] * reach
+
+
+def on_wheel(f, points) -> None:
+    """Points (n, 3), over the length of a tether, that lie on the surface which the tethers sweep out."""
+    reach = np.linalg.norm(points[:, :2], axis=1)
+    same_place(points[:, 2], downwind(f, reach), size=10)
+
+
 def tethers(f, entity):
-    """Tethers of an electric sail reach from the hub to its rim, evenly all round, across the normal."""
+    """Tethers of an electric sail reach from the hub to its rim, evenly all round, across the normal, or bent downwind
+    by the angle that the scene tells."""
     stowing(f, entity)
+    radius, depth = rim_of(f)
     for row in out(f, some(f, 4)):
         lines = np.array(lines_in_body(f, entity, row)) / size(f, entity)
-        same_place(lines[..., 2], 0 * lines[..., 2], size=10)
-        same_place(np.linalg.norm(lines[:, 1], axis=1), np.ones(len(lines)), size=10)
-        angle = np.sort(np.arctan2(lines[:, 1, 1], lines[:, 1, 0]))
+        on_wheel(f, lines[:, [0, -1]].reshape(-1, 3))
+        same_place(np.linalg.norm(lines[:, -1, :2], axis=1), np.full(len(lines), radius), size=10)
+        same_place(lines[:, -1, 2], np.full(len(lines), depth), size=10)
+        angle = np.sort(np.arctan2(lines[:, -1, 1], lines[:, -1, 0]))
         assert np.allclose(np.diff(angle), 2 * np.pi / len(lines), atol=1e-4)
 
 
 def rim(f, entity):
-    """A circle of the sail's radius across the normal."""
+    """A circle across the normal, through the ends of the tethers."""
     stowing(f, entity)
+    radius, depth = rim_of(f)
     for row in out(f, some(f, 4)):
         (line,) = lines_in_body(f, entity, row)
-        same_place(line[:, 2], 0 * line[:, 2], size=10 * size(f, entity))
-        same_place(np.linalg.norm(line, axis=1), np.full(len(line), size(f, entity)), size=10 * size(f, entity))
+        line = line / size(f, entity)
+        same_place(line[:, 2], np.full(len(line), depth), size=10)
+        same_place(np.linalg.norm(line[:, :2], axis=1), np.full(len(line), radius), size=10)
 
 
 def at_tips(f, entity):
     """A box at the end of each tether."""
-    flat(f, entity, 1e-4, (0.999, 1.001))
+    stowing(f, entity)
+    for row in out(f, some(f, 4)):
+        points = parts(f, entity, row) / size(f, entity)
+        on_wheel(f, points)
+        same_place(np.linalg.norm(points[:, :2], axis=1), np.full(len(points), rim_of(f)[0]), size=10)
 
 
 def hub(f, entity):
@@ -257,7 +299,8 @@ def sheath(f, entity):
             same_place(points[:, :2], 0 * points[:, :2], size=10)
             assert -1 < points[:, 2].min() < points[:, 2].max() < 0
         else:
-            same_place(points[:, 2], 0 * points[:, 2], size=10)
+            chord = np.linalg.norm(points[:, :2], axis=1) * np.divide(*rim_of(f)[::-1])
+            same_place(points[:, 2], chord, size=10)
             assert np.all(np.linalg.norm(points, axis=1) < 1)
 
 
@@ -303,8 +346,12 @@ def primer_arrow(f, entity):
 
 
 def disc(f, entity):
-    """A faint disc across the normal as wide as the rim."""
-    flat(f, entity, 1e-4, (0.99, 1.01))
+    """A faint disc as wide as the rim, across the normal or bent as the tethers are."""
+    stowing(f, entity)
+    for row in out(f, some(f, 4)):
+        points = parts(f, entity, row) / size(f, entity)
+        on_wheel(f, points)
+        assert abs(np.linalg.norm(points[:, :2], axis=1).max() - rim_of(f)[0]) < 0.01
     assert f.picture.color(entity, "Mesh3D:albedo_factor")[0][3] < 20
 
 

@@ -7,6 +7,7 @@ import re
 import numpy as np
 
 from . import lit
+from .craft import rim_of
 from .facts import path_word, unit
 from .measure import hue, same_direction, same_place, same_turn
 from .now import PUSHES, told
@@ -178,19 +179,22 @@ def rows_of(f, places) -> np.ndarray:
 
 
 def wheels(f, entity):
-    """Rims and spokes of wheels across the normal of their place."""
+    """Rims and spokes of wheels across the normal of their place, or bent as their scene tells."""
     lines = f.picture.line(entity, 0)
     groups = [lines[k : k + 5] for k in range(0, len(lines), 5)]
-    centres = np.array([group[0][:-1].mean(0) for group in groups])
+    centres = np.array([group[1][len(group[1]) // 2] for group in groups])  # a spoke goes from rim to rim
     rows = rows_of_near(f, centres)
     normals = f.truth.carried(f.truth.normal)[rows]
+    reach, depth = rim_of(f)
     for group, centre, normal in zip(groups, centres, normals, strict=True):
         rim = group[0] - centre
-        radius = np.linalg.norm(rim, axis=1)
-        assert np.ptp(radius) < 1e-4 * radius.max()
-        assert np.abs(rim @ normal).max() < 1e-4 * radius.max()
+        size = np.linalg.norm(rim, axis=1).max()  # a tether's length, of straight ones
+        height = rim @ normal
+        assert np.abs(height - depth / np.hypot(reach, depth) * size).max() < 1e-4 * size
+        assert np.ptp(np.linalg.norm(rim, axis=1)) < 1e-4 * size
         for spoke in group[1:]:
-            assert np.abs((spoke - centre) @ normal).max() < 1e-4 * radius.max()
+            assert np.abs(np.linalg.norm(spoke[[0, -1]] - centre, axis=1) - size).max() < 1e-4 * size
+            assert np.abs((spoke[[0, -1]] - centre) @ normal - height[0]).max() < 1e-4 * size
 
 
 def rows_of_near(f, places) -> np.ndarray:

@@ -31,6 +31,7 @@ from sailviz.cli.shared import BAD_INPUT, tell
     help="Of a recording, over time: a quantity as [[expect]] names it, a column of /environment, or thrust/NAME, the "
     "push of one of several devices. May be repeated.",
 )
+@click.option("--over", metavar="NAME", help="Of a recording: the quantity that its curves run along instead of time.")
 @click.option("--orbit", is_flag=True, help="Of a recording: its orbit, seen from the pole or, if low, in its plane.")
 @click.option("-q", "--quiet", is_flag=True, help="Print errors only.")
 def figure(
@@ -41,6 +42,7 @@ def figure(
     dpi: int,
     series: str | None,
     quantities: tuple[str, ...],
+    over: str | None,
     orbit: bool,
     quiet: bool,
 ) -> None:
@@ -59,7 +61,7 @@ def figure(
     recordings = {name for name in figures if is_recording(name)}
     target = Path() if output is None else Path(output)
     folder = output is None or is_folder(target) or not target.suffix
-    why_not = contradiction(figures, recordings, folder, bool(quantities or orbit), series)
+    why_not = contradiction(figures, recordings, folder, bool(quantities or over or orbit), series)
     if why_not:
         raise click.UsageError(why_not)
     try:
@@ -72,7 +74,7 @@ def figure(
                 from sailviz.figures import draw_recording
 
                 path, words = target / f"{Path(name).stem}.png" if folder else target, name
-                draw_recording(name, path, quantities, orbit=orbit, style=style, dpi=dpi)
+                draw_recording(name, path, quantities, orbit=orbit, over=over or "", style=style, dpi=dpi)
             else:
                 path, words = target / f"{name}.png" if folder else target, title(name)
                 draw(name, path, style, dpi, **({"series": series} if series else {}))
@@ -89,7 +91,7 @@ def contradiction(figures: tuple[str, ...], recordings: set[str], folder: bool, 
     if not figures:
         return "Name a figure or a recording, or see the figures with --list."
     if asked and len(recordings) < len(set(figures)):
-        return "--quantity and --orbit are for recordings."
+        return "--quantity, --over and --orbit are for recordings."
     if series and recordings:
         return "--series is for wind-fit, not for recordings."
     return "" if folder or len(figures) == 1 else "-o names one file, but there are several figures: give a folder."

@@ -120,6 +120,24 @@ CATALOGUE = {
         "shapes",
         "incidence",
     ),
+    "torque": Entry(
+        "What turns a sail: torques that four vanes and four switched patches give together",
+        f"{OURS}; 1 m² each, 10 and 9.6 m from the middle, at 1 au, vanes to ±85°, film jpl-2015; outline: the most in "
+        "every direction; light tilted towards x; patches about half on",
+        (15, 5.2),
+        (1, 3),
+        "actuators",
+        "attainable",
+    ),
+    "spin": Entry(
+        "An electric sail winds itself up: the spin of its wheel, and the voltage that holds its axis",
+        f"{OURS}; effect after Toivanen and Janhunen; circle at 1 au, pitch held; right: 20 tethers of 15 km, coned by "
+        "3°, first turn in 30 min, masses invented",
+        (12, 5.6),
+        (1, 2),
+        "actuators",
+        "coriolis",
+    ),
     "drag-profile": Entry(
         "Plasma brake: drag per length of tether over altitude, and the shapes that stand for it",
         f"{OURS}; force law reconstructed after Janhunen (2014), ionosphere of IRI-2020; topside models differ by more "

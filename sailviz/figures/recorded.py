@@ -53,6 +53,7 @@ if TYPE_CHECKING:
     from sailviz.figures.page import Pen
 
 SMOOTH = 5  # degrees between rows above which an orbit from the pole is no smooth line
+MOST_POINTS = 4000  # of a line over another quantity
 NEAR = 1.25  # times the largest distance from the Sun: rings of planets within are drawn
 RINGS = ("Mercury", "Venus", "Earth", "Mars", "Jupiter", "Saturn")
 
@@ -63,10 +64,12 @@ def draw_recording(
     quantities: Sequence[str] = (),
     *,
     orbit: bool = False,
+    over: str = "",
     style: str = "dark",
     dpi: int = 160,
 ) -> Path:
-    """Draw quantities of a recording over time, or with `orbit` its orbit, into a PNG, SVG or PDF. Returns the path.
+    """Draw quantities of a recording over time, or over another quantity (`over`), or with `orbit` its orbit, into a
+    PNG, SVG or PDF. Returns the path.
 
     quantities : names as [[expect]] writes them (`radius_au`), the same without a unit, or columns of /environment;
     without any, those of the usual ones that change, or where there are ensembles how they spread. With `orbit` they
@@ -76,16 +79,25 @@ def draw_recording(
     kind = file_of(path)
     recording = read(source)
     run = run_of(recording)
+    if orbit and over:
+        raise FigureError("an orbit is drawn in its plane, not over a quantity")
+    if over:
+        entry, options = over_page(run, quantities, over)
+        return written(path, kind, entry, style, dpi, options)
     ensembles = ensembles_of(recording)
     if ensembles and not quantities and not orbit:
         entry, options = ensembles_page(run, ensembles)
         return written(path, kind, entry, style, dpi, options)
-    names = list(quantities) or ([] if orbit else telling(run))
-    if len(names) > MOST:
-        raise FigureError(f"a page has room for {MOST} quantities, not for {len(names)}")
-    curves = [curve_of(run, name) for name in dict.fromkeys(names)]
+    curves = curves_of(run, list(quantities) or ([] if orbit else telling(run)))
     entry, options = (orbit_page if orbit else curves_page)(recording, run, curves)
     return written(path, kind, entry, style, dpi, options)
+
+
+def curves_of(run: Run, names: list[str]) -> list[Curve]:
+    """What they mean, each once. FigureError for one that means nothing, and for too many."""
+    if len(names) > MOST:
+        raise FigureError(f"a page has room for {MOST} quantities, not for {len(names)}")
+    return [curve_of(run, name) for name in dict.fromkeys(names)]
 
 
 def note(run: Run) -> str:
@@ -100,6 +112,18 @@ def curves_page(recording: Recording, run: Run, curves: list[Curve]) -> tuple[En
     size = (9.0, 1.5 + 2.1 * len(curves))
     entry = Entry(run.setting.title, note(run), size, (len(curves), 1), "recorded", "over_time")
     return entry, {"run": run, "curves": curves, "ensembles": ensembles_of(recording)}
+
+
+def over_page(run: Run, quantities: Sequence[str], over: str) -> tuple[Entry, dict[str, Any]]:
+    """A panel for each quantity, one above the other, over another quantity."""
+    along = curve_of(run, over)
+    names = list(quantities) or [name for name in telling(run) if curve_of(run, name).stem != along.stem]
+    curves = curves_of(run, names)
+    if not curves:
+        raise FigureError(f"nothing but {over} changes in this recording: name quantities to draw over it")
+    size = (9.0, 1.5 + 2.1 * len(curves))
+    entry = Entry(run.setting.title, note(run), size, (len(curves), 1), "recorded", "over_another")
+    return entry, {"curves": curves, "along": along}
 
 
 def ensembles_page(run: Run, ensembles: list[Ensemble]) -> tuple[Entry, dict[str, Any]]:
@@ -136,6 +160,29 @@ def over_time(pen: Pen, *panels: Axes, run: Run, curves: list[Curve], ensembles:
         draw_curve(pen, panel, run, curve)
         draw_beside(pen, panel, run, curve, ensembles)
         panel.label_outer()
+
+
+def over_another(pen: Pen, *panels: Axes, curves: list[Curve], along: Curve) -> None:
+    """Curves over another one, in the order of the rows; dots at the start and at the end."""
+    few = max(len(along.values) // MOST_POINTS, 1)
+    rows = np.unique(np.append(np.arange(0, len(along.values), few), len(along.values) - 1))
+    across = broken(along.values, along.turn)[rows]
+    for panel, curve in zip(panels, curves, strict=True):
+        color = pen.readable(curve.color)
+        up = broken(curve.values, curve.turn)[rows]
+        panel.plot(across, up, color=color, gid=curve.name)
+        panel.plot(across[:1], up[:1], "o", color=color, markersize=4, markerfacecolor="none", gid="start")
+        panel.plot(across[-1:], up[-1:], "o", color=color, markersize=4, gid="end")
+        panel.set_title(curve.words, loc="left", fontsize=10.5)
+        panel.set_xlabel(along.words)
+        if along.logarithmic and np.nanmin(along.values) > 0:
+            panel.set_xscale("log")
+        if curve.logarithmic and np.nanmin(curve.values) > 0:
+            panel.set_yscale("log")
+        else:
+            steady(panel, curve.values)
+        panel.label_outer()
+    panels[0].set_title("open dot: start, full dot: end", loc="right", fontsize=8.5, color=pen.style.quiet)
 
 
 def spread(pen: Pen, *panels: Axes, run: Run, ensembles: list[Ensemble], offsets: list[Offset]) -> None:

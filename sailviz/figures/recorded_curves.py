@@ -101,6 +101,7 @@ NAMED = {  # of stems whose words or colours are not those of their names
     "sunlit_fraction": ("Lit share of the Sun's disc", "sunlight"),
 }
 FROM_THE_SUN = {"radius": "Distance from the Sun", "height": "Height above the ecliptic"}
+OWN_UNIT = {"dose": "yr"}  # of stems that are not told in what others of their dimension are
 IN_AU = ("radius", "height", "semi_major_axis", "periapsis", "apoapsis")
 MOST = 12  # panels of a page
 BINS = 1500  # stretches of time of which the least and the largest value are drawn where there are more rows
@@ -173,7 +174,7 @@ def usual(run: Run, stem: str) -> str:
     dimension = DIMENSIONS.get(stem)
     if dimension is None:
         return stem
-    unit = "au" if stem in IN_AU and run.setting.body.name == "Sun" else USUAL[dimension]
+    unit = "au" if stem in IN_AU and run.setting.body.name == "Sun" else OWN_UNIT.get(stem, USUAL[dimension])
     return f"{stem}_{unit}" if unit else stem
 
 

@@ -14,7 +14,7 @@ from sailviz.constants import AU
 from sailviz.elements import elements
 from sailviz.ephemeris import planet_orbit
 from sailviz.figures import FigureError, draw_recording, page
-from sailviz.figures.recorded import curves_page, orbit_page
+from sailviz.figures.recorded import curves_page, orbit_page, over_page
 from sailviz.figures.recorded_curves import BINS, broken, curve_of, telling, thinned
 from sailviz.recording import read, record_trajectory
 from sailviz.recording.drawing import style as colors
@@ -187,3 +187,31 @@ def test_the_command_tells_recordings_from_names_and_refuses_in_a_sentence(fligh
         assert "Traceback" not in words
     with pytest.raises(FigureError, match="room for 12"):
         draw_recording(flight[0], out, ["radius"] * 13)
+
+
+@pytest.fixture(scope="module")
+def ageing(tmp_path_factory):
+    path = tmp_path_factory.mktemp("figures") / "ageing.rrd"
+    record(simulate(load_scene("body/ageing-mercury", {"propagation.outputs": 101})), path)
+    return path
+
+
+def test_temperature_and_dose_are_drawn_over_the_distance_row_by_row(ageing, tmp_path):
+    run = run_of(read(ageing))
+    drawn = composed(over_page(run, ["film_temperature", "dose"], "radius"))
+    away = np.linalg.norm(run.position, axis=1) / AU
+    for axes, name, column in zip(drawn.axes, ("film_temperature", "dose"), ("temperature_K", "dose_yr"), strict=True):
+        x, y = line(axes, name).get_data()
+        np.testing.assert_allclose(x, away, rtol=1e-12)
+        np.testing.assert_allclose(y, run.film[column], rtol=1e-12)
+        assert line(axes, "end").get_data()[0] == pytest.approx(away[-1])
+    assert drawn.axes[-1].get_xlabel() == "Distance from the Sun [au]"
+    shell = CliRunner().invoke(main, ["figure", str(ageing), "--over", "radius_au", "-o", str(tmp_path / "over.svg")])
+    assert shell.exit_code == 0, shell.output
+    for words, sentence in (
+        (["--over", "radus"], "radius"),
+        (["--over", "radius", "--orbit"], "not over a quantity"),
+    ):
+        refused = CliRunner().invoke(main, ["figure", str(ageing), *words, "-o", str(tmp_path / "no.svg")])
+        assert refused.exit_code == 2
+        assert sentence in refused.output

@@ -50,10 +50,13 @@ def direction(azimuth: ArrayLike, elevation: ArrayLike) -> np.ndarray:
     return np.stack([across * np.cos(azimuth), across * np.sin(azimuth), np.sin(elevation)], -1)
 
 
-def seen(cosine: np.ndarray, film: bool) -> np.ndarray:
+def seen(cosine: np.ndarray, film: bool, open: bool = False) -> np.ndarray:
     """How well a sail is seen whose lit side has this cosine to the eye: a film best at a slant and from its lit side,
-    a wheel from both."""
-    if film:
+    a wheel from both. open : there is something to be seen on its surface."""
+    if open:
+        lit = cosine if film else np.abs(cosine)
+        found = np.interp(lit, [-1, -0.2, 0, 0.2, 0.45, 0.6, 0.8, 1], [-0.5, -0.5, -0.3, 0.3, 1, 1, 0.75, 0.4])
+    elif film:
         found = np.interp(cosine, [-1, -0.2, 0, 0.12, 0.3, 0.75, 1], [-0.25, -0.3, -0.1, 0.75, 1, 1, 0.7])
     else:
         found = np.interp(np.abs(cosine), [0, 0.25, 0.8, 1], [-0.3, 1, 1, 0.7])
@@ -77,16 +80,18 @@ def fixed_eye(
     near: np.ndarray | None = None,
     spots: np.ndarray | None = None,
     others: np.ndarray | None = None,
+    open: bool = False,
 ) -> np.ndarray:
     """Direction (3,) from which a sail is seen best over some moments.
 
     normals, thrusts : (n, 3) unit vectors; weights (n,) of the moments; push : what seeing the thrust is worth
     near : (3,) where the craft should be in the near half, as long as that is worth; spots : (k, 3) things whose names
-    should be apart, of the size of the scene; others : (n, 3) a second arrow
+    should be apart, of the size of the scene; others : (n, 3) a second arrow; open : whether something is to be seen
+    on the sail's surface
     """
     eyes = directions(elevations)
     share = weights / weights.sum()
-    score = seen(-(eyes @ normals.T), film) @ share + push * across(eyes, thrusts, 0.85) @ share
+    score = seen(-(eyes @ normals.T), film, open) @ share + push * across(eyes, thrusts, 0.85) @ share
     if near is not None:
         score = score + eyes @ near
     if others is not None:

@@ -236,6 +236,7 @@ def eye_of(story: Story) -> np.ndarray:
         (12.0, 20.0, 28.0, 36.0),
         push=1.8,
         others=near.velocity[some],
+        open=lit_shape.is_lit(story) or bool(story.setting.craft.cone or story.setting.craft.rise),
     )
 
 

@@ -127,8 +127,8 @@ def craft_of(facts: Mapping[str, np.ndarray], resolved: Mapping[str, Any]) -> Cr
     count = None if tethers is None else int(tethers)
     device = resolved.get("device")
     wheel = (device.get("wheel") if isinstance(device, Mapping) else None) or {}
-    bend = {"cone": float(wheel.get("cone") or 0.0), "rise": float(wheel.get("rise") or 0.0)}
-    return Craft(kind, LABELS.get(kind, "Spacecraft"), side, count, length, shape=shape, **bend)
+    cone, rise = float(wheel.get("cone") or 0.0), float(wheel.get("rise") or 0.0)
+    return Craft(kind, LABELS.get(kind, "Spacecraft"), side, count, length, shape=shape, cone=cone, rise=rise)
 
 
 def drawn_run_of(recording: Recording) -> Run:

@@ -31,12 +31,14 @@ def bent(cone: float, rise: float, start: float = 0.0) -> np.ndarray:
     slope = 2 * rise  # at the tip
     length = 0.5 * np.hypot(1, slope) + 0.5 * np.arcsinh(slope) / slope  # of an arc of reach 1
     out = np.linspace(start, 1, 13)
-    return np.stack([out, rise * out**2], 1) / length
+    arc: np.ndarray = np.stack([out, rise * out**2], 1) / length
+    return arc
 
 
 def round_hub(profile: np.ndarray, out: np.ndarray) -> np.ndarray:
     """Points (n, k, 3) of tethers like a profile (k, 2) in directions (n, 3) of the plane."""
-    return profile[:, :1] * out[:, None] + profile[:, 1:] * np.array([0.0, 0.0, 1.0])
+    points: np.ndarray = profile[:, :1] * out[:, None] + profile[:, 1:] * np.array([0.0, 0.0, 1.0])
+    return points
 
 
 def wheel_hub() -> Trimesh:

@@ -22,7 +22,7 @@ import numpy as np
 from sailviz.design.minimum_time import shooting
 from sailviz.design.minimum_time.boundary_conditions import DIRECTION, ToCircle, hamiltonians, polar
 from sailviz.design.minimum_time.costates import propagate
-from sailviz.design.minimum_time.search import Extremal
+from sailviz.design.minimum_time.finishing import Extremal
 from sailviz.design.minimum_time.singular_arcs import KINDS, fly_arcs, propagate_arcs, switching
 
 LENGTHS = 3  # place of the first arc's length among the unknowns, behind the direction of the costates

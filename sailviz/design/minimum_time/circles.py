@@ -7,13 +7,15 @@ Pontryagin's principle, checked against Taylor-series integration and direct tra
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU, RADIUS_SUN
+from sailviz.design.minimum_time.arc_transfer import FarSearch, search_by_arcs, transfer_by_arcs
 from sailviz.design.minimum_time.boundary_conditions import (
     SPAN,
     BetweenEllipses,
@@ -23,6 +25,9 @@ from sailviz.design.minimum_time.boundary_conditions import (
     ToCircle,
     hamiltonians,
 )
+from sailviz.design.minimum_time.continuation import farthest, follow
+from sailviz.design.minimum_time.effort import Effort, Progress
+from sailviz.design.minimum_time.finishing import Extremal
 from sailviz.design.minimum_time.planar_transfer import (
     Transfer,
     exponent,
@@ -32,16 +37,25 @@ from sailviz.design.minimum_time.planar_transfer import (
     strength,
     time_unit,
 )
-from sailviz.design.minimum_time.search import Extremal, Search, follow, search, spiral_time
+from sailviz.design.minimum_time.search import Search, search, spiral_time
 from sailviz.design.minimum_time.state_costate import OWN, Sail, canonical_sail
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.steering.optimal import STRENGTH
 
-DIRECTIONS = (512, 2048)  # screened at first, and where those lead nowhere
-SPANS = (2.0, 3.0)  # flight times looked at, in estimates of the flight time
 
-Progress = Callable[[float, str], None]
+class Tier(NamedTuple):
+    """Costates screened, flight times looked at in estimates of the flight time, rounds of zooming."""
+
+    costates: int
+    spans: float
+    zooms: int
+
+
+FIRST, SECOND, LAST = Tier(128, 1.5, 0), Tier(512, 2.0, 3), Tier(2048, 3.0, 3)
+SPANS = 2.0  # the same between ellipses
+MORE_THRUST = "take a higher characteristic acceleration"
+WIDE = (0.03, 0.1, 0.3, 0.0)  # roundings of an electric sail's switching where the first tier leads nowhere
 
 
 def circle_to_circle(
@@ -51,61 +65,68 @@ def circle_to_circle(
     characteristic_acceleration: float,
     *,
     progress: Progress | None = None,
+    time_limit: float | None = None,
+    effort: Effort | None = None,
 ) -> Transfer:
     """Fastest transfer between coplanar circles about the Sun, the angle between departure and arrival free.
 
     Radii in m, characteristic_acceleration in m/s2 at 1 au, scalars; device : a sail's name or a Film. No guess is
-    needed: hundreds of costates are flown roughly, the best finished to a residual under 1e-9 (as a rule 1e-13);
-    where that leads nowhere, continuation in the target radius, the film and the acceleration. The same input gives
-    the same result. progress(share, words) is called now and then.
+    needed: costates from all around are flown roughly, the best finished to a residual under 1e-9 (as a rule 1e-13)
+    until several that were far apart agree; where that leads nowhere, more of them, and continuation in the target
+    radius, the film and the acceleration; outwards and for an electric sail first along rows of arcs, some of partial
+    thrust (`arc_structures`). The same input gives the same result, but where it was stopped by time_limit,
+    s of wall time. progress(share, words) is called now and then. effort : an `Effort` instead of both.
     """
     _check(device, characteristic_acceleration, initial_radius=initial_radius, final_radius=final_radius)
-    report = progress or (lambda share, words: None)
+    effort = Effort.of(effort, progress, time_limit)
+    proof = _proof_of_none(initial_radius, final_radius, device)
+    if proof:
+        return no_transfer(device, characteristic_acceleration, initial_radius, proof, effort.impossible())
     sail = sail_from(device, characteristic_acceleration, initial_radius)
     ratio = final_radius / initial_radius
-    if abs(ratio - 1) < 1e-9:
-        return no_transfer(device, characteristic_acceleration, initial_radius, "the two circles are the same")
-    if final_radius < RADIUS_SUN:
-        return no_transfer(device, characteristic_acceleration, initial_radius, "the target lies inside the Sun")
-
     flight = ToCircle(sail, PolarState(1.0, 0.0, 1.0), ratio)
 
     def accept(unknowns: np.ndarray) -> bool:
         return _is_fastest(flight, unknowns)
 
     def result(found: Search, method: str) -> Transfer:
-        return fastest_transfer(flight, found, device, characteristic_acceleration, initial_radius, method)
+        return fastest_transfer(flight, found, device, characteristic_acceleration, initial_radius, method, effort)
 
     guess = _flight_time(device, sail, ratio)
-    for n, spans in zip(DIRECTIONS, SPANS, strict=True):
-        found = search(flight, spans * guess, n, ratio > 1, accept, progress=partial(_share, report, f"{n} directions"))
-        if found.extremals:
-            return result(found, "screening")
 
-    reached, nearest = 1.0, None  # the circle that continuation came to, and its flight
-    for name, problem_at, radius_at, base_device in _detours(flight, device, ratio):
-        base = problem_at(0.0)
-        base_guess = _flight_time(base_device, base.sail, base.radius)
-        easy = search(base, SPANS[0] * base_guess, DIRECTIONS[0], ratio > 1, accept)
-        if not easy.extremals:
-            continue
-        path = follow(problem_at, easy.extremals[0].unknowns, progress=partial(_share, report, name))
-        if path.complete and accept(path.unknowns):
-            miss = float(np.linalg.norm(flight.misses(path.unknowns[None], 1e-13)))
-            extremal = Extremal(path.unknowns, miss)
-            return result(Search((extremal,), easy.starts, easy.converged, miss, path.unknowns), name)
-        if abs(np.log(radius_at(path.parameter))) > abs(np.log(reached)):
-            reached, nearest = radius_at(path.parameter), path.unknowns
-    reason = f"no transfer was found within {SPANS[-1] * guess * time_unit(initial_radius) / DAY:.0f} d; "
-    if nearest is not None:
-        days = nearest[SPAN] * time_unit(initial_radius) / DAY
-        reason += f"the nearest circle reached has {reached * initial_radius / AU:.6g} au, after {days:.4f} d"
-    else:
-        days = found.nearest[SPAN] * time_unit(initial_radius) / DAY
-        reason += (
-            f"the nearest flight misses the target orbit by {found.nearest_miss:.2g} of its size after {days:.4f} d"
-        )
-    return no_transfer(device, characteristic_acceleration, initial_radius, reason)
+    def screened(tier: Tier) -> Search:
+        return search(
+            flight, tier.spans * guess, tier.costates, ratio > 1, accept,
+            effort=effort, words=f"{tier.costates} costates", zooms=tier.zooms, roundings=WIDE if tier.zooms else None,
+        )  # fmt: skip
+
+    found, reached = screened(FIRST), Reached()
+    partial_thrust = ratio > 1 and isinstance(device, str) and device in ELECTRIC_SAILS
+    if not (found.extremals or effort.stopped) and partial_thrust:
+        by_arcs = _by_arcs(flight, partial(_flight_time, device, sail), accept, effort)
+        if by_arcs is not None and by_arcs.arrived:
+            transfer = transfer_by_arcs(flight, by_arcs, str(device), characteristic_acceleration, initial_radius)
+            return replace(transfer, ending=effort.found() if transfer.feasible else effort.not_found())
+        if by_arcs is not None and by_arcs.farthest is not None:
+            reached.circle = by_arcs.farthest.radius, float(np.sum(by_arcs.farthest.structure.lengths))
+    if not (found.extremals or effort.stopped):
+        found = screened(SECOND)
+    if not (found.extremals or effort.stopped or reached.circle):
+        followed = _by_detours(flight, device, ratio, accept, effort, reached)
+        if followed is not None:
+            return result(*followed)
+        if not effort.stopped:
+            found = screened(LAST)
+    if found.extremals:
+        return result(found, "screening")
+    told, advice = reached.words(initial_radius, characteristic_acceleration)
+    if effort.stopped:
+        advice.append(f"give the search more time than the {effort.seconds:.3g} s it had")
+    nearest = "; ".join(told or [_nearest_screened(found, initial_radius)])
+    days = LAST.spans * guess * time_unit(initial_radius) / DAY
+    reason = f"no transfer was found within {days:.0f} d; {nearest}"
+    ending = effort.not_found(nearest, *advice)
+    return no_transfer(device, characteristic_acceleration, initial_radius, reason, ending)
 
 
 def planar_orbit_to_orbit(
@@ -116,6 +137,8 @@ def planar_orbit_to_orbit(
     *,
     directions: int = 2048,
     progress: Progress | None = None,
+    time_limit: float | None = None,
+    effort: Effort | None = None,
 ) -> Transfer:
     """Fastest transfer between coplanar ellipses about the Sun, both anomalies free.
 
@@ -127,7 +150,7 @@ def planar_orbit_to_orbit(
     _check(device, characteristic_acceleration, initial_semi_major_axis=a, final_semi_major_axis=a_f)
     if not (0 <= e < 1 and 0 <= e_f < 1):
         raise ValueError(f"eccentricities must lie in [0, 1), got {e!r} and {e_f!r}")
-    report = progress or (lambda share, words: None)
+    effort = Effort.of(effort, progress, time_limit)
     sail = sail_from(device, characteristic_acceleration, a)
     ratio = a_f / a
     flight = BetweenEllipses(sail, Ellipse(1 - e * e, e, argument), Ellipse(ratio * (1 - e_f * e_f), e_f, argument_f))
@@ -135,18 +158,30 @@ def planar_orbit_to_orbit(
     def accept(unknowns: np.ndarray) -> bool:
         return _is_fastest(flight, unknowns)
 
-    span = SPANS[0] * _flight_time(device, sail, ratio)
+    span = SPANS * _flight_time(device, sail, ratio)
     found = search(
-        flight, span, directions, ratio > 1, accept, progress=partial(_share, report, f"{directions} directions")
-    )
+        flight, span, directions, ratio > 1, accept,
+        effort=effort, words=f"{directions} directions", roundings=WIDE, all_of_them=True,
+    )  # fmt: skip
     if found.extremals:
-        return fastest_transfer(flight, found, device, characteristic_acceleration, a, "screening")
-    days = found.nearest[SPAN] * time_unit(a) / DAY
-    reason = (
-        f"no transfer was found within {span * time_unit(a) / DAY:.0f} d; the nearest flight misses the target orbit "
-        f"by {found.nearest_miss:.2g} of its size after {days:.4f} d"
-    )
-    return no_transfer(device, characteristic_acceleration, a, reason)
+        return fastest_transfer(flight, found, device, characteristic_acceleration, a, "screening", effort)
+    nearest = _nearest_screened(found, a)
+    reason = f"no transfer was found within {span * time_unit(a) / DAY:.0f} d; {nearest}"
+    advice = (MORE_THRUST, f"let it look in more than {directions:,} directions")
+    return no_transfer(device, characteristic_acceleration, a, reason, effort.not_found(nearest, *advice))
+
+
+def _proof_of_none(initial_radius: float, final_radius: float, device: Film | str) -> str:
+    """Why there cannot be a transfer between two circles, "" where that is not known."""
+    if final_radius < RADIUS_SUN:
+        return "the target lies inside the Sun"
+    if initial_radius < RADIUS_SUN:
+        return "the departure lies inside the Sun"
+    if abs(final_radius / initial_radius - 1) < 1e-9:
+        return "the two circles are the same"
+    if isinstance(device, Film) and device.b2 == 0.0 and device.b3 == 0.0:
+        return "a film that reflects nothing pushes along the Sun line only, which leaves r x v as it is"
+    return ""
 
 
 def _check(device: Film | str, characteristic_acceleration: float, **positive: float) -> None:
@@ -154,10 +189,6 @@ def _check(device: Film | str, characteristic_acceleration: float, **positive: f
         if np.ndim(value) or not (np.isfinite(value) and value > 0):
             raise ValueError(f"{name} must be a positive number, got {value!r}")
     canonical_sail(device, characteristic_acceleration)  # ValueError for what is no sail
-
-
-def _share(report: Progress, words: str, share: float) -> None:
-    report(share, words)
 
 
 def _is_fastest(flight: PlanarProblem, unknowns: np.ndarray) -> bool:
@@ -171,14 +202,105 @@ def _flight_time(device: Film | str, sail: Sail, ratio: float) -> float:
     return float(np.hypot(spiral, np.pi * (0.5 + 0.5 * ratio) ** 1.5))
 
 
-def _detours(flight, device, ratio):
-    """(name, problem at s, target radius at s, device at 0) of problems that are easier at s = 0 and the given one at
-    1."""
+def _nearest_screened(found: Search, radius: float) -> str:
+    """In words, the true flight of all those flown roughly that came nearest."""
+    if not len(found.nearest):
+        return "no flight of the true sail was flown"
+    days = found.nearest[SPAN] * time_unit(radius) / DAY
+    return f"the nearest flight misses the target orbit by {found.nearest_miss:.2g} of its size after {days:.4f} d"
 
-    def parameters_at(change):
+
+@dataclass(frozen=True)
+class Detour:
+    """An easier problem that turns into the one asked for: problem_at(0) with its device, problem_at(1). radius_at and
+    strength_at : its target, and its acceleration in shares of the one asked for, where true flights on the way say
+    something."""
+
+    name: str
+    problem_at: Callable[[float], ToCircle]
+    device: Film | str
+    radius_at: Callable[[float], float] | None = None
+    strength_at: Callable[[float], float] | None = None
+
+
+@dataclass
+class Reached:
+    """How far true flights came on the way to a target out of reach: (radius, time) of the farthest circle and
+    (acceleration, time) of the weakest sail that reached the target, each in units of the transfer, or None."""
+
+    circle: tuple[float, float] | None = None
+    sail: tuple[float, float] | None = None
+
+    def add(self, detour: Detour, at: float, time: float) -> None:
+        if detour.radius_at is not None:
+            radius = detour.radius_at(at)
+            if self.circle is None or abs(np.log(radius)) > abs(np.log(self.circle[0])):
+                self.circle = radius, time
+        elif detour.strength_at is not None:
+            self.sail = detour.strength_at(at), time
+
+    def words(self, radius: float, characteristic_acceleration: float) -> tuple[list[str], list[str]]:
+        """The nearest true flights and what to change, in words."""
+        nearest, advice, unit = [], [], time_unit(radius) / DAY
+        if self.circle is not None:
+            reached = f"{self.circle[0] * radius / AU:.6g} au"
+            nearest.append(f"the nearest circle reached has {reached}, after {self.circle[1] * unit:.4f} d")
+            advice.append(f"aim no farther than {reached}")
+        if self.sail is not None:
+            enough = f"{self.sail[0] * characteristic_acceleration * 1e3:.5g} mm/s²"
+            nearest.append(f"{enough} reach the target, after {self.sail[1] * unit:.4f} d")
+            advice.append(f"take {enough} or more")
+        return nearest, advice or [MORE_THRUST]
+
+
+def _by_arcs(
+    flight: ToCircle, flight_time: Callable[[float], float], accept: Callable[[np.ndarray], bool], effort: Effort
+) -> FarSearch | None:
+    """What was followed outwards along rows of arcs; None where the effort ended before."""
+    with effort.stoppable():
+        return search_by_arcs(
+            flight, flight_time, accept, lambda share: effort.report(share, "arcs of partial thrust"), effort.check
+        )
+    return None
+
+
+def _by_detours(
+    flight: ToCircle,
+    device: Film | str,
+    ratio: float,
+    accept: Callable[[np.ndarray], bool],
+    effort: Effort,
+    reached: Reached,
+) -> tuple[Search, str] | None:
+    """What continuation from easier problems found, and its name; else how far it came is added to what was reached."""
+    for detour in _detours(flight, device, ratio):
+        base = detour.problem_at(0.0)
+        estimate = _flight_time(detour.device, base.sail, base.radius)
+        for n, spans, zooms in (FIRST, SECOND):
+            easy = search(base, spans * estimate, n, ratio > 1, accept, effort=effort, words=detour.name, zooms=zooms)
+            if easy.extremals:
+                break
+        else:
+            continue
+        path = follow(detour.problem_at, easy.extremals[0].unknowns, effort=effort, words=detour.name)
+        if path.complete and accept(path.unknowns):
+            miss = float(np.linalg.norm(flight.misses(path.unknowns[None], 1e-13)))
+            extremal = Extremal(path.unknowns, miss)
+            return Search((extremal,), easy.starts, easy.converged, miss, path.unknowns), detour.name
+        if detour.radius_at is not None or detour.strength_at is not None:
+            true = farthest(path, detour.problem_at, _is_fastest, effort)
+            if true is not None:
+                reached.add(detour, true[0], true[1].time)
+        if effort.stopped:
+            break
+    return None
+
+
+def _detours(flight: ToCircle, device: Film | str, ratio: float) -> Iterator[Detour]:
+    def parameters_at(change: Callable[[float], np.ndarray]) -> Callable[[float], ToCircle]:
         return lambda s: replace(flight, sail=Sail(flight.sail.kind, change(s)))
 
-    def film_at(s):
+    def film_at(s: float) -> np.ndarray:
         film = FILMS[device] if isinstance(device, str) else device
         ideal = FILMS["ideal"]
         mixed = Film(
@@ -188,23 +310,25 @@ def _detours(flight, device, ratio):
         return canonical_sail(mixed, ac).parameters
 
     if not (isinstance(device, str) and device in ELECTRIC_SAILS):
-        yield "continuation in the film", parameters_at(film_at), lambda s: 1.0, "ideal"
+        yield Detour("continuation in the film", parameters_at(film_at), "ideal")
 
     for share in (0.5, 0.75, 0.25):
 
-        def radius_at(s, share=share):
+        def radius_at(s: float, share: float = share) -> float:
             return float(ratio ** (share + (1 - share) * s))
 
-        yield (
-            "continuation in the target radius",
-            lambda s, radius_at=radius_at: replace(flight, radius=radius_at(s)),
-            radius_at,
-            device,
-        )
+        def problem_at(s: float, radius_at: Callable[[float], float] = radius_at) -> ToCircle:
+            return replace(flight, radius=radius_at(s))
 
-    def stronger(s):
+        yield Detour("continuation in the target radius", problem_at, device, radius_at)
+
+    def strength_at(s: float) -> float:
+        return float(2.0 ** (1.0 - s))
+
+    def stronger(s: float) -> np.ndarray:
         parameters = flight.sail.parameters.copy()
-        parameters[OWN + STRENGTH] *= 2.0 ** (1.0 - s)
+        parameters[OWN + STRENGTH] *= strength_at(s)
         return parameters
 
-    yield "continuation in the characteristic acceleration", parameters_at(stronger), lambda s: 1.0, device
+    name = "continuation in the characteristic acceleration"
+    yield Detour(name, parameters_at(stronger), device, strength_at=strength_at)

@@ -25,6 +25,7 @@ import numpy as np
 
 FOUND, NOT_FOUND, IMPOSSIBLE = "found", "not found", "impossible"  # outcomes of a search
 TIME_LIMIT, INTERRUPTED = "time limit", "interrupted"  # what stopped it
+STOPPED = {TIME_LIMIT: "The search was stopped by its time limit", INTERRUPTED: "The search was interrupted"}
 
 Progress = Callable[[float, str], None]
 Residuals = Callable[[np.ndarray], np.ndarray]
@@ -49,6 +50,14 @@ class Ending:
     seconds: float = 0.0
     nearest: str = ""
     advice: tuple[str, ...] = ()
+
+    @property
+    def mark(self) -> str:
+        """The sentence that a result bears whose search was stopped, "" where it was not; a space before."""
+        return f" {STOPPED[self.stopped]}: more time may find a faster flight." if self.stopped else ""
+
+
+ANSWERED, UNANSWERED = Ending(FOUND), Ending(NOT_FOUND)  # of results made without a search
 
 
 class Effort:

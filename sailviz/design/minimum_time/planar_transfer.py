@@ -16,7 +16,9 @@ from sailviz.design.minimum_time.boundary_conditions import (
     polar,
 )
 from sailviz.design.minimum_time.costates import Flight, propagate
-from sailviz.design.minimum_time.search import Extremal, Search
+from sailviz.design.minimum_time.effort import ANSWERED, UNANSWERED, Effort, Ending
+from sailviz.design.minimum_time.finishing import Extremal
+from sailviz.design.minimum_time.search import Search
 from sailviz.design.minimum_time.singular_arcs import Arc, fly, throttle_of_arcs
 from sailviz.design.minimum_time.state_costate import (
     COSTATES,
@@ -81,7 +83,7 @@ class Trajectory:
 
 @dataclass(frozen=True)
 class Transfer:
-    """The fastest flight found. NaN, feasible False and a reason where none was.
+    """The fastest flight found. NaN, feasible False and a reason where none was; ending says how the search ended.
 
     time s; revolutions about the Sun; costates (3,) of radius, radial and transverse speed at departure, with
     mu = r0 = 1 and H = +1; residual: norm of the boundary miss, canonical; hamiltonian_drift: largest |H - 1| on the
@@ -115,6 +117,7 @@ class Transfer:
     start: np.ndarray | None = None  # (12,) state and costates, canonical
     arcs: tuple[Arc, ...] = ()
     throttle: tuple[float, float] | None = None
+    ending: Ending = ANSWERED
 
     @property
     def claim(self) -> str:
@@ -130,7 +133,7 @@ class Transfer:
         others = "the only extremal" if self.solutions == 1 else f"the fastest of {self.solutions} extremals"
         return (
             f"Best found: {self.time / DAY:.4f} d, {others} that {self.starts} starts led to "
-            f"({self.converged} converged); that none is faster is likely, not proven."
+            f"({self.converged} converged); that none is faster is likely, not proven.{self.ending.mark}"
         )
 
     def trajectory(self, samples: int = 1000) -> Trajectory:
@@ -160,12 +163,18 @@ class Transfer:
         )
 
 
-def no_transfer(device: Film | str, characteristic_acceleration: float, radius: float, reason: str) -> Transfer:
+def no_transfer(
+    device: Film | str,
+    characteristic_acceleration: float,
+    radius: float,
+    reason: str,
+    ending: Ending = UNANSWERED,
+) -> Transfer:
     """The result where no flight was found, and why."""
     nothing = np.array([])
     return Transfer(
         device, characteristic_acceleration, radius, np.nan, np.nan, np.full(3, np.nan), np.nan, np.nan, 0, nothing,
-        nothing, np.nan, 0, 0, "", False, reason,
+        nothing, np.nan, 0, 0, "", False, reason, ending=ending,
     )  # fmt: skip
 
 
@@ -176,13 +185,14 @@ def fastest_transfer(
     characteristic_acceleration: float,
     radius: float,
     method: str,
+    effort: Effort,
 ) -> Transfer:
     """The result in SI of the fastest extremal that keeps out of the Sun. radius : m, the unit of the flight."""
     flown = [_flown(flight, extremal) for extremal in found.extremals]
     flown = [one for one in flown if one.closest * radius > RADIUS_SUN]
     if not flown:
         reason = "every extremal found passes through the Sun"
-        return no_transfer(device, characteristic_acceleration, radius, reason)
+        return no_transfer(device, characteristic_acceleration, radius, reason, effort.not_found())
     best, unit = flown[0], time_unit(radius)
     misses = flight.misses(best.extremal.unknowns[None], 1e-13)[0, :-1]  # without that of the costates' length
     planar, departure, arrival = best.start[[LRX, LVX, LVY]], np.nan, np.nan
@@ -210,6 +220,7 @@ def fastest_transfer(
         departure_anomaly=float(departure % (2 * np.pi)),
         arrival_anomaly=float(arrival % (2 * np.pi)),
         start=best.start,
+        ending=effort.found(),
     )
 
 

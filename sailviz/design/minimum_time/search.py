@@ -1,17 +1,17 @@
-"""Finding extremals without a guess: look at many flights roughly, finish the promising ones, follow where none is.
+"""Finding extremals without a guess: look at many flights roughly, finish the promising ones.
 
 Screening. Of a flight with any costates, all its moments are candidates: one integration per direction tells when it
 comes nearest to the target orbit. Directions come from a low-discrepancy sequence that is densest about the costates
-of a slow spiral, (1, 0, 1) / sqrt 2; three rounds of it then zoom in on the best.
-Finishing. Levenberg-Marquardt at a loose, then at a tight integration tolerance; E-sails first with their switching
-rounded off, then less and less so.
-Following. Where nothing converges: pseudo-arclength continuation in a parameter that makes the problem easy at 0.
+of a slow spiral, (1, 0, 1) / sqrt 2; rounds of it may then zoom in on the best.
+Finishing, a few at a time and the most promising first, see `finishing`. Once several starts that are far apart have
+led to the same fastest flight and none to a faster one, the rest is left; of an electric sail, for each of the
+roundings of its switching.
 """
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import partial
@@ -19,9 +19,10 @@ from typing import TypeVar
 
 import numpy as np
 
-from sailviz.design.minimum_time import shooting
 from sailviz.design.minimum_time.boundary_conditions import ANOMALY, DIRECTION, SPAN, PlanarProblem
 from sailviz.design.minimum_time.costates import STEPS, fly_dense
+from sailviz.design.minimum_time.effort import Effort
+from sailviz.design.minimum_time.finishing import Extremal, alike, distinct, exact, solve
 from sailviz.design.minimum_time.state_costate import VX, VY, Sail, X, Y
 from sailviz.propulsion.solar_sail import Film
 from sailviz.steering.optimal import optimal_pitch
@@ -29,33 +30,22 @@ from sailviz.steering.optimal import optimal_pitch
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
-LOOSE, TIGHT = 1e-9, 1e-13  # integration tolerances
-ROUGH = 1e-6  # of screening
-GOAL = 1e-9  # largest miss of a solution
-ROUNDINGS = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 0.0)  # of the switching, on the way to the true law
-FOLLOWED = 0.03  # the rounding that continuation keeps
+ROUGH = 1e-4  # integration tolerance of screening
+ROUNDINGS = (0.3, 0.1)  # of an electric sail's switching: each finds flights that the other does not
 KEPT, CHILDREN, ZOOMS = 24, 16, 3
+APART, ZOOMED_APART = 0.15, 0.03  # no two candidates are nearer in the costates' direction and the share of time
+SAME_ROOT = 1e-4  # relative: two rough solutions are one
+AT_A_TIME = 4  # candidates that are finished together
+AGREE, ENOUGH = 3, 12  # starts that led to the same flight; starts finished, of which one led to a flight
 PIECE, MOST_STEPS_OF_A_PIECE, DIVE = 2.0, 150, 0.02  # of screened flights: time, steps; radius
 MOST_AT_ONCE = 64  # flights that are screened in one piece of compiled work, which hears no Ctrl-C: 0.1 s
 WORKERS = min(8, os.cpu_count() or 1)
 
 
 @dataclass(frozen=True)
-class Extremal:
-    """One solution of the necessary conditions: unknowns as the problem defines them, largest miss."""
-
-    unknowns: np.ndarray
-    miss: float
-
-    @property
-    def time(self) -> float:
-        return float(self.unknowns[SPAN])
-
-
-@dataclass(frozen=True)
 class Search:
     """What a search found: distinct extremals, fastest first; how many starts were finished and how many of them
-    converged; the best miss among all the screened flights and its unknowns."""
+    converged; the best miss among the screened flights of the true sail and its unknowns, where any were flown."""
 
     extremals: tuple[Extremal, ...]
     starts: int
@@ -140,7 +130,10 @@ def spread(problem: PlanarProblem, n: int, outwards: bool) -> np.ndarray:
 
 
 def in_threads(
-    function: Callable[[Item], Result], items: Sequence[Item], progress: Callable[[float], None] | None = None
+    function: Callable[[Item], Result],
+    items: Sequence[Item],
+    progress: Callable[[float], None] | None = None,
+    effort: Effort | None = None,
 ) -> list[Result]:
     """[function(item)] in the order of the items; compiled code lets go of the interpreter."""
     results = []
@@ -150,13 +143,15 @@ def in_threads(
                 results.append(result)
                 if progress is not None:
                     progress(len(results) / len(items))
-        except BaseException:  # Ctrl-C: what waits is not begun
+        except BaseException:  # Ctrl-C: what waits is not begun, what goes on hears of it
             pool.shutdown(wait=False, cancel_futures=True)
+            if effort is not None:
+                effort.end()
             raise
     return results
 
 
-def _screened(problem, unknowns, span, smoothing, progress=None):
+def _screened(problem, unknowns, span, smoothing, effort, progress=None):
     """(miss (n,), unknowns with their times) of the flights that unknowns (n, k) begin."""
     starts = problem.starts(unknowns)
     semi_latus_rectum, *_ = problem.target
@@ -165,68 +160,106 @@ def _screened(problem, unknowns, span, smoothing, progress=None):
     sail, target = problem.sail, problem.target
 
     def part(places):
+        effort.check()
         return screen(starts[places], span, samples, sail, smoothing, ROUGH, target)
 
-    parts = max(16, -(-len(unknowns) // MOST_AT_ONCE))
-    found = in_threads(part, np.array_split(np.arange(len(unknowns)), parts), progress)
+    parts = max(min(16, len(unknowns) // 8), -(-len(unknowns) // MOST_AT_ONCE))
+    found = in_threads(part, np.array_split(np.arange(len(unknowns)), parts), progress, effort)
+    effort.count("costates flown roughly", len(unknowns))
     miss, when = (np.concatenate(column) for column in zip(*found, strict=True))
     unknowns = unknowns.copy()
     unknowns[:, SPAN] = when
     return np.where(np.isfinite(miss), miss, np.inf), unknowns
 
 
-def _candidates(problem, n, span, smoothing, outwards, progress):
+def _candidates(problem, n, zooms, span, smoothing, outwards, effort, progress):
     """(miss, unknowns) of the most promising flights, best first, no two alike."""
-    miss, unknowns = _screened(problem, spread(problem, n, outwards), span, smoothing, progress)
+    miss, unknowns = _screened(problem, spread(problem, n, outwards), span, smoothing, effort, progress)
     width, q = 3.0 / np.sqrt(n), sequence(CHILDREN, 2)
-    for _ in range(ZOOMS):
+    for _ in range(zooms):
         best = unknowns[np.argsort(miss, kind="stable")[:KEPT]]
         children = np.repeat(best, CHILDREN, axis=0)
         angle, around = np.tile(width * np.sqrt(q[:, 0]), len(best)), np.tile(2 * np.pi * q[:, 1], len(best))
         children[:, DIRECTION] = _turned(children[:, DIRECTION], angle, around)
         if problem.free_departure:
             children[:, ANOMALY] += np.tile(width * (2 * sequence(CHILDREN, 3)[:, 2] - 1), len(best))
-        more, children = _screened(problem, children, span, smoothing)
+        more, children = _screened(problem, children, span, smoothing, effort)
         miss, unknowns = np.concatenate([miss, more]), np.concatenate([unknowns, children])
         width *= 0.5
-    chosen = []
-    for i in np.argsort(miss, kind="stable"):
+    least = ZOOMED_APART if zooms else APART
+    chosen: list[int] = []
+    for i in np.argsort(miss, kind="stable").tolist():
+        if len(chosen) == KEPT or not (np.isfinite(miss[i]) or not chosen):
+            break
         apart = [np.abs(unknowns[i] - unknowns[j]) for j in chosen]
-        if all(np.linalg.norm(a[DIRECTION]) > 0.03 or a[SPAN] > 0.5 or np.any(a[ANOMALY:] > 0.1) for a in apart):
+        if all(
+            np.linalg.norm(a[DIRECTION]) > least or a[SPAN] > least * unknowns[j][SPAN] or np.any(a[ANOMALY:] > 0.1)
+            for a, j in zip(apart, chosen, strict=True)
+        ):
             chosen.append(i)
-            if len(chosen) == KEPT or not np.isfinite(miss[i]):
-                break
     return miss[chosen], unknowns[chosen]
 
 
-def _solve(problem, unknowns, smoothing):
-    limit = np.array([0.2, 0.2, 0.2, 0.1 * max(unknowns[SPAN], 0.1), 0.3])[: problem.size]
-    return shooting.solve(
-        lambda x: problem.misses(x, LOOSE, smoothing), unknowns, step=1e-6, goal=1e-7, most=30, limit=limit
-    )
+class _Finishing:
+    """Candidates that are finished one group after the other, and what they led to."""
 
+    def __init__(self, problem: PlanarProblem, accept: Callable[[np.ndarray], bool], effort: Effort):
+        self.problem, self.accept, self.effort = problem, accept, effort
+        self.starts = 0
+        self.led: list[Extremal] = []  # what each start led to that converged to something wanted
+        self._before = (0, 0)  # starts, and how many of them led somewhere, before this pass
 
-def finish(problem: PlanarProblem, unknowns: np.ndarray, smoothing: float = 0.0) -> Extremal | None:
-    """The extremal that rough unknowns (k,) lead to, or None."""
-    for eps in [eps for eps in ROUNDINGS if eps <= smoothing]:
-        found = _solve(problem, unknowns, eps)
-        if not found.residual < 1e-5:
-            return None
-        unknowns = found.unknowns
-    found = shooting.solve(lambda x: problem.misses(x, TIGHT), unknowns, step=1e-7, goal=1e-13, most=15)
-    if not (found.residual < GOAL and found.unknowns[SPAN] > 0):
-        return None
-    return Extremal(found.unknowns, found.residual)
+    def extremals(self) -> tuple[Extremal, ...]:
+        return distinct(self.led)
 
+    def begin(self) -> None:
+        """Another pass: what starts agree on is seen anew, since each rounding finds flights of its own."""
+        self._before = self.starts, len(self.led)
 
-def distinct(extremals: Iterable[Extremal]) -> tuple[Extremal, ...]:
-    """Without repetitions, fastest first; two are one when times and costates agree to 1e-6."""
-    kept: list[Extremal] = []
-    for extremal in sorted(extremals, key=lambda e: e.time):
-        apart = [np.abs(extremal.unknowns[:ANOMALY] - other.unknowns[:ANOMALY]) for other in kept]
-        if all(np.max(a[DIRECTION]) > 1e-5 or a[SPAN] > 1e-6 * extremal.time for a in apart):
-            kept.append(extremal)
-    return tuple(kept)
+    def settled(self) -> bool:
+        """Whether the rest of a pass may be left: several of its starts led to the fastest flight that it found, or
+        many were finished and there is a flight."""
+        starts, led = self._before
+        here = self.led[led:]
+        first = min(here, key=lambda extremal: extremal.time, default=None)
+        agreeing = sum(alike(extremal.unknowns, first.unknowns) for extremal in here) if first else 0
+        return agreeing >= AGREE or (len(self.led) > 0 and self.starts - starts >= ENOUGH)
+
+    def finish(
+        self,
+        candidates: np.ndarray,
+        smoothing: float,
+        quickly: bool,
+        all_of_them: bool,
+        progress: Callable[[float], None],
+    ) -> None:
+        """Finish candidates (n, k), all of them or until it is settled. quickly : as in `solve`."""
+        known: list[tuple[np.ndarray, Extremal | None]] = []  # solutions with the switching rounded off; what they are
+
+        def rounded(unknowns):
+            return solve(self.problem, unknowns, smoothing, self.effort, quickly)
+
+        def true(unknowns):
+            found = exact(self.problem, unknowns, smoothing, self.effort)
+            return found if found is not None and self.accept(found.unknowns) else None
+
+        for first in range(0, len(candidates), AT_A_TIME):
+            group = list(candidates[first : first + AT_A_TIME])
+            roots = [x for x in in_threads(rounded, group, None, self.effort) if x is not None]
+            new: list[np.ndarray] = []
+            for x in roots:
+                if not any(alike(x, other, SAME_ROOT) for other in [*new, *(y for y, _ in known)]):
+                    new.append(x)
+            known += zip(new, in_threads(true, new, None, self.effort), strict=True)
+            for x in roots:
+                found = next(found for y, found in known if alike(x, y, SAME_ROOT))
+                if found is not None:
+                    self.led.append(found)
+            self.starts += len(group)
+            self.effort.count("of them finished", len(group))
+            progress((first + len(group)) / len(candidates))
+            if self.settled() and not all_of_them:
+                break
 
 
 def search(
@@ -235,114 +268,36 @@ def search(
     n: int,
     outwards: bool,
     accept: Callable[[np.ndarray], bool],
+    *,
+    effort: Effort | None = None,
+    words: str = "",
+    zooms: int = ZOOMS,
     roundings: Sequence[float] | None = None,
-    progress: Callable[[float], None] | None = None,
+    all_of_them: bool = False,
 ) -> Search:
-    """Screen n directions over a span, finish the best. accept(unknowns (k,)) -> bool refuses extremals that are not
-    wanted. roundings : with which the switching is rounded off at first, one pass each."""
-    if roundings is None:
-        roundings = (0.03, 0.1, 0.0) if problem.sail.rounds_off else (0.0,)
-    found: list[Extremal | None] = []
-    starts, best, nearest = 0, np.inf, np.empty(0)
-    for i, eps in enumerate(roundings):
+    """Screen n directions over a span, finish the best; what there is, where the effort ends before.
 
-        def report(begin: float, share: float, i: int = i) -> None:
-            if progress is not None:
-                progress((i + begin + 0.5 * share) / len(roundings))
-
-        miss, candidates = _candidates(problem, n, span, eps, outwards, partial(report, 0.0))
-        if miss[0] < best:
-            best, nearest = float(miss[0]), candidates[0]
-        starts += len(candidates)
-        found += in_threads(partial(finish, problem, smoothing=eps), candidates, partial(report, 0.5))
-    converged = [extremal for extremal in found if extremal is not None and accept(extremal.unknowns)]
-    return Search(distinct(converged), starts, len(converged), best, nearest)
-
-
-@dataclass(frozen=True)
-class Path:
-    """End of a continuation: unknowns at the parameter reached, the largest on the way; complete at 1."""
-
-    parameter: float
-    unknowns: np.ndarray
-
-    @property
-    def complete(self) -> bool:
-        return self.parameter == 1.0
-
-
-def follow(
-    problem_at: Callable[[float], PlanarProblem],
-    unknowns: np.ndarray,
-    steps: int = 500,
-    progress: Callable[[float], None] | None = None,
-) -> Path:
-    """Pseudo-arclength continuation from a solution of problem_at(0) towards problem_at(1), through folds.
-
-    problem_at(s) : a problem for every s; unknowns (k,) solve it at 0. An E-sail is followed with its switching
-    rounded off: where a coasting arc appears, the true misses have no derivative. Source: H. B. Keller (1977).
+    accept(unknowns (k,)) -> bool refuses extremals that are not wanted. words : for the progress. zooms : rounds that
+    look closer around the best. roundings : of the switching, one pass each, for an electric sail. all_of_them : no
+    candidate is left.
     """
-    eps = FOLLOWED if problem_at(0.0).sail.rounds_off else 0.0
-    for rounding in [x for x in reversed(ROUNDINGS) if 0.0 < x <= eps]:
-        unknowns = _solve(problem_at(0.0), unknowns, rounding).unknowns
-    k = len(unknowns)
-    scale = np.ones(k)
-    scale[SPAN] = 1.0 / unknowns[SPAN]
+    if roundings is None or not problem.sail.rounds_off:
+        roundings = ROUNDINGS if problem.sail.rounds_off else (0.0,)
+    effort = effort or Effort()
+    finishing = _Finishing(problem, accept, effort)
+    best, nearest = np.inf, np.empty(0)
 
-    def misses(z):
-        return problem_at(z[k]).misses((z[:k] / scale)[None], LOOSE, eps)[0]
+    def report(begin: float, share: float) -> None:
+        effort.report((begin + 0.5 * share) / len(roundings), words)
 
-    def slope(z):
-        x, step = z[:k] / scale, 1e-6
-        values = problem_at(z[k]).misses(np.vstack([x, x + np.diag(step / scale)]), LOOSE, eps)
-        along = problem_at(z[k] + step).misses(x[None], LOOSE, eps)[0]
-        return np.column_stack([(values[1:] - values[0]).T, along - values[0]]) / step
-
-    def corrected(z, ahead, jacobian):
-        """The solution near z + ahead in the plane normal to ahead, and the iterations it took; None."""
-        new = z + ahead
-        for turn in range(6):
-            f = misses(new)
-            if np.all(np.isfinite(f)) and np.abs(f).max() < 1e-8:
-                return new, turn
-            here = slope(new) if turn else jacobian
-            if not (np.all(np.isfinite(f)) and np.all(np.isfinite(here))):
-                return None
-            matrix, off = np.vstack([here, ahead]), np.append(f, ahead @ (new - z - ahead))
-            new = new - np.linalg.lstsq(matrix, off)[0]
-            if np.linalg.norm(new - z) > 3 * np.linalg.norm(ahead):
-                return None
-        return None
-
-    z, tangent = np.append(unknowns * scale, 0.0), np.append(np.zeros(k), 1.0)
-    reach, best, ds = 0.0, np.array(unknowns), 0.02
-    for _ in range(steps):
-        jacobian = slope(z)
-        if not np.all(np.isfinite(jacobian)):
-            break
-        null = np.linalg.svd(jacobian)[2][-1]
-        tangent = null if null @ tangent >= 0 else -null
-        found = corrected(z, ds * tangent, jacobian)
-        while found is None and ds > 1e-6:
-            ds *= 0.5
-            found = corrected(z, ds * tangent, jacobian)
-        if found is None:
-            break
-        new, turns = found
-        if new[k] >= 1.0:
-            share = (1.0 - z[k]) / (new[k] - z[k])
-            there = finish(problem_at(1.0), (z + share * (new - z))[:k] / scale, eps)
-            if there is not None:
-                return Path(1.0, there.unknowns)
-            break
-        z = new
-        if z[k] > reach:
-            reach, best = z[k], z[:k] / scale
-        if progress is not None:
-            progress(reach)
-        if turns <= 3:
-            ds = min(1.5 * ds, 0.2)
-    return Path(float(reach), best)
+    with effort.stoppable():
+        for i, eps in enumerate(roundings):
+            finishing.begin()
+            miss, candidates = _candidates(problem, n, zooms, span, eps, outwards, effort, partial(report, i))
+            if eps == 0.0:
+                best, nearest = float(miss[0]), candidates[0]
+            finishing.finish(candidates, eps, zooms == 0, all_of_them, partial(report, i + 0.5))
+    return Search(finishing.extremals(), finishing.starts, len(finishing.led), best, nearest)
 
 
 def spiral_time(device: Film | str, strength: float, exponent: float, start: float, end: float) -> float:

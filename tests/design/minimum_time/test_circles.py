@@ -14,7 +14,10 @@ from scipy.interpolate import CubicSpline
 from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.design.minimum_time import circle_to_circle, circles, planar_orbit_to_orbit, sail_from
 from sailviz.design.minimum_time.boundary_conditions import ToCircle
-from sailviz.design.minimum_time.search import distinct, finish, follow, search
+from sailviz.design.minimum_time.continuation import follow
+from sailviz.design.minimum_time.effort import FOUND, IMPOSSIBLE, NOT_FOUND, TIME_LIMIT, Effort
+from sailviz.design.minimum_time.finishing import distinct, finish
+from sailviz.design.minimum_time.search import search
 from sailviz.propulsion import solar_sail
 from sailviz.propulsion.solar_sail import Film
 
@@ -176,31 +179,77 @@ def test_transfer_between_ellipses_ends_on_the_target_ellipse():
 
 def test_targets_out_of_reach_are_named_with_the_nearest_circle_reached(monkeypatch):
     """A search that is blind for Mars, and a continuation stopped on its way, still say how far they came."""
-
-    def blind(flight, *rest, **more):
-        found = search(flight, *rest, **more)
-        return replace(found, extremals=()) if flight.radius == MARS else found
-
-    monkeypatch.setattr(circles, "DIRECTIONS", (128, 128))
-    monkeypatch.setattr(circles, "search", blind)
-    monkeypatch.setattr(circles, "follow", partial(follow, steps=3))
-    found = circle_to_circle(AU, MARS * AU, "ideal", 2e-3)
-    assert (found.feasible, found.solutions) == (False, 0)
+    found = _blindly(monkeypatch, "ideal", 2e-3, MARS, 3)
+    assert (found.feasible, found.solutions, found.ending.outcome) == (False, 0, NOT_FOUND)
     assert np.isnan(found.time)
     assert np.isnan(found.costates).all()
-    said = re.fullmatch(
-        r"no transfer was found within (.*) d; the nearest circle reached has (.*) au, after (.*) d", found.reason
-    )
-    radius, days = float(said[2]), float(said[3])
+    said = re.search(r"the nearest circle reached has (.*) au, after (.*) d; (.*) mm/s² reach", found.reason)
+    radius, days = float(said[1]), float(said[2])
     assert MARS**0.75 < radius < MARS
     assert circle_to_circle(AU, radius * AU, "ideal", 2e-3).time / DAY == pytest.approx(days, rel=1e-5)
+    assert 2 < float(said[3]) < 4
+    assert f"aim no farther than {radius:.6g} au" in found.ending.advice
     with pytest.raises(ValueError, match="no flight to show"):
         found.trajectory()
 
 
-def test_infeasible_requests_say_why():
-    assert "inside the Sun" in circle_to_circle(AU, 1e-3 * AU, "ideal", 1e-3).reason
-    assert "the same" in circle_to_circle(AU, AU, "ideal", 1e-3).reason
+def test_what_an_electric_sail_reached_is_told_of_the_true_sail_not_of_the_rounded_one(monkeypatch):
+    """With its switching rounded off by 0.03, as it is on the way, the same circle is reached 2 % sooner."""
+    found = _blindly(monkeypatch, "electric-sail", 2e-3, VENUS, 6)
+    said = re.search(r"the nearest circle reached has ([\d.]+) au, after ([\d.]+) d", found.reason)
+    true = circle_to_circle(AU, float(said[1]) * AU, "electric-sail", 2e-3)
+    assert float(said[2]) == pytest.approx(true.time / DAY, rel=1e-5)
+
+
+def _blindly(monkeypatch, device, ac, target, steps):
+    """The search for a circle that is blind for just this circle and this sail, its continuations of a few steps."""
+    sail = sail_from(device, ac, AU)
+
+    def blind(flight, *rest, **more):
+        found = search(flight, *rest, **more)
+        there = flight.radius == target and np.array_equal(flight.sail.parameters, sail.parameters)
+        return replace(found, extremals=()) if there else found
+
+    for tier in ("SECOND", "LAST"):
+        monkeypatch.setattr(circles, tier, circles.FIRST)
+    monkeypatch.setattr(circles, "search", blind)
+    monkeypatch.setattr(circles, "follow", partial(follow, steps=steps))
+    return circle_to_circle(AU, target * AU, device, ac)
+
+
+def test_a_search_out_of_time_gives_the_best_it_has_with_a_mark(monkeypatch):
+    """The time is over once the first four starts have been finished."""
+    effort = Effort(time_limit=1e3)
+    monkeypatch.setattr(effort, "count", lambda what, n=1: effort.end(TIME_LIMIT) if "finished" in what else None)
+    monkeypatch.setattr("sailviz.design.minimum_time.search.AGREE", 5)
+    found = circle_to_circle(AU, MARS * AU, "ideal", 1e-3, effort=effort)
+    assert (found.ending.outcome, found.ending.stopped) == (FOUND, TIME_LIMIT)
+    assert found.time / DAY == pytest.approx(407.698642981187, rel=1e-9)
+    assert "stopped by its time limit" in found.claim
+
+
+def test_a_search_without_time_says_that_it_had_none():
+    found = circle_to_circle(AU, MARS * AU, "ideal", 1e-3, time_limit=1e-6)
+    assert (found.feasible, found.ending.outcome, found.ending.stopped) == (False, NOT_FOUND, TIME_LIMIT)
+    assert "give the search more time" in found.ending.advice[-1]
+
+
+@pytest.mark.parametrize(
+    ("radii", "device", "why"),
+    [
+        ((AU, 1e-3 * AU), "ideal", "the target lies inside the Sun"),
+        ((1e-3 * AU, AU), "ideal", "the departure lies inside the Sun"),
+        ((AU, AU), "ideal", "the same"),
+        ((AU, 2 * AU), Film(0.5, 0.0, 0.0), "along the Sun line only"),
+    ],
+)
+def test_only_what_is_proven_is_called_impossible(radii, device, why):
+    found = circle_to_circle(*radii, device, 1e-3)
+    assert (found.feasible, found.ending.outcome) == (False, IMPOSSIBLE)
+    assert why in found.reason
+
+
+def test_questions_that_make_no_sense_are_refused():
     with pytest.raises(ValueError, match="characteristic_acceleration must be a positive number"):
         circle_to_circle(AU, 2 * AU, "ideal", 0.0)
     with pytest.raises(ValueError, match="jpl-2015"):

@@ -6,6 +6,7 @@ thrust.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
@@ -14,7 +15,7 @@ import rerun as rr
 
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.craft import CraftDrawing
-from sailviz.recording.drawing.log import Picture, f4
+from sailviz.recording.drawing.log import Color, Picture, f4
 from sailviz.recording.drawing.style import points
 from sailviz.run.arrays import Craft, CraftPart
 from sailviz.shapes import sails, tethers
@@ -35,16 +36,22 @@ def log_square_sail(picture: Picture, path: str, near: bool) -> None:
         picture.log_lines(f"{path}/seams", strips, style.SEAM, style.WIDTH["seam"])
 
 
-def log_own_shape(parts: tuple[CraftPart, ...], size: float, picture: Picture, path: str, near: bool) -> None:
-    """The parts of a sail with a shape, its longest side drawn as 1: what is pushed is what is seen. The front of a
-    film is the lit side."""
+def own_meshes(parts: tuple[CraftPart, ...], size: float) -> Iterator[tuple[str, Trimesh, Color, str | None]]:
+    """(name, mesh, colour, side) of what is drawn of a craft with a shape, its longest side as 1: what is pushed is
+    what is seen. The front of a film is the lit side."""
     for film in (True, False):
         meshes = [Trimesh(part.corners / size, part.faces, process=False) for part in parts if part.film == film]
         if meshes and film:
-            picture.log_mesh(f"{path}/film_lit", joined(meshes), style.FILM_LIT, side="front")
-            picture.log_mesh(f"{path}/film_dark", joined(meshes), style.FILM_DARK, side="back")
+            yield "film_lit", joined(meshes), style.FILM_LIT, "front"
+            yield "film_dark", joined(meshes), style.FILM_DARK, "back"
         elif meshes:
-            picture.log_mesh(f"{path}/bus", flat_sided(joined(meshes)), style.BUS)
+            yield "bus", flat_sided(joined(meshes)), style.BUS, None
+
+
+def log_own_shape(parts: tuple[CraftPart, ...], size: float, picture: Picture, path: str, near: bool) -> None:
+    """The parts of a craft with a shape."""
+    for name, mesh, color, side in own_meshes(parts, size):
+        picture.log_mesh(f"{path}/{name}", mesh, color, side=side)
 
 
 OWN_SIZE = 0.12  # in the system view, of a mesh whose craft is else drawn as a dot

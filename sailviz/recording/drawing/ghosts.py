@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import rerun as rr
 
-from sailviz.frames import body_axes, quaternion, rotation
+from sailviz.frames import quaternion
 from sailviz.recording.drawing import style
+from sailviz.recording.drawing.devices import own_meshes
 from sailviz.recording.drawing.log import Picture, f4
-from sailviz.recording.drawing.near import is_given
+from sailviz.recording.drawing.near import axes_rtn
 from sailviz.recording.drawing.samples import TURNS
 from sailviz.recording.drawing.story import Story
 from sailviz.shapes import sails, tethers
@@ -18,6 +19,7 @@ COUNT, MANY = 12, 14  # up to three turns, and above
 HALF = 0.5  # of the craft's own size
 CLEAR = 1.3  # of their size that two of them keep from one another round a planet, where turns lie close
 APART = 0.4  # of the way between two of them, a wheel's radius or half a film's side at most
+LEAST = 0.01  # of the largest distance that is drawn, below which they would be specks under the craft
 SPOKES = 4
 
 
@@ -51,18 +53,25 @@ def log_ghosts(picture: Picture, story: Story, size: float) -> None:
     rows = rows[~story.stowed[rows]]
     if len(rows) == 0 or not (story.craft.facing or story.craft.slanted):
         return
-    place, axes = story.position[rows], body_axes(story.normal[rows], story.samples.axes[rows][..., 1])
-    if is_given(story.samples):
-        axes = rotation(story.samples.run.attitude.quaternion[rows])
+    place, axes = story.position[rows], story.samples.axes[rows] @ axes_rtn(story.samples)[rows]
     gaps = np.linalg.norm(np.diff(place, axis=0), axis=1)
     room = float(np.median(gaps)) if len(gaps) else size
     small = min(HALF * size, (APART if story.craft.slanted else 2 * APART) * room)
+    if small < LEAST * story.reach:
+        return
     if not story.frame.sun:
         some = clear_of_one_another(place, CLEAR * small * (2.0 if story.craft.slanted else 1.0))
         place, axes = place[some], axes[some]
     poses = rr.InstancePoses3D(
         translations=f4(place), quaternions=f4(quaternion(axes)), scales=f4(np.full((len(place), 3), small))
     )
+    whole = story.setting.craft
+    if whole.parts and whole.side is not None:
+        for name, mesh, color, side in own_meshes(whole.parts, whole.side):
+            path = f"/world/ghosts/{name.removeprefix('film_')}"
+            picture.log_mesh(path, mesh, style.dim(color, style.GHOST), side=side)
+            picture.log_static(path, poses)
+        return
     if story.craft.facing:
         film = sails.film()
         for name, color, side in (("lit", style.FILM_LIT, "back"), ("dark", style.FILM_DARK, "front")):

@@ -19,6 +19,7 @@ from sailviz.recording.drawing.story import Story
 
 RAMP = np.array([[18, 22, 40], *style.PUSH_RAMP], float)  # in the shade, then weak to strong
 MOMENTS = 24  # of the colours along a flight, fewer of large meshes
+MOST_MOMENTS = 240  # of a craft that turns by itself
 MOST_BYTES = 1_200_000  # of all colours
 MOST_FACETS = 20_000  # beyond which only films and bodies are told apart
 SHORT, LONGER = 2.5, 4.0  # length of the torque: with the root of its share of the largest
@@ -26,9 +27,8 @@ NO_LEVER = 1e-6  # of the size, at which a torque is rounding
 REACH = 0.75  # of the size, as far as the force's line is followed to where it meets the shape's plane
 UNITS = ((1.0, "N m"), (1e-3, "mN m"), (1e-6, "µN m"), (1e-9, "nN m"))
 COLUMNS = tuple(f"light_torque_{axis}_N_m" for axis in "xyz")
-LEGEND = (
-    "facets: dark in the shade, violet to orange by the **pressure** of the light; the white arrow is its **torque**"
-)
+LEGEND = "facets: dark in the shade, violet to orange by the **pressure** of the light"
+ARROW = "; the white arrow is its **torque**"
 
 
 def colors_of(pressure: np.ndarray) -> np.ndarray:
@@ -55,8 +55,8 @@ def is_lit(story: Story) -> bool:
 
 
 def lit_words(story: Story) -> list[str]:
-    """What the colours of facets and the torque mean, where they are drawn: not in a low orbit."""
-    return [LEGEND] if is_lit(story) and not story.frame.low else []
+    """What the colours of facets mean, and the arrow of the torque, which no low orbit has."""
+    return [LEGEND + ("" if story.frame.low else ARROW)] if is_lit(story) else []
 
 
 def log_facets(picture: Picture, story: Story, path: str) -> None:
@@ -68,15 +68,27 @@ def log_facets(picture: Picture, story: Story, path: str) -> None:
     corners = np.concatenate([part.corners[part.faces] for part in craft.parts]) / craft.side
     faces = np.arange(3 * len(corners), dtype=np.uint32).reshape(-1, 3)
     picture.log_static(path, rr.Mesh3D(vertex_positions=f4(corners.reshape(-1, 3)), triangle_indices=faces))
-    moments = max(2, min(MOMENTS, MOST_BYTES // (12 * len(corners))))
-    rows = np.unique(np.round(np.linspace(0, len(story.time) - 1, moments)).astype(int))
-    light = story.near.body[rows, 0, :]  # x of the view, in body axes
+    light = story.near.body[:, 0, :]  # x of the view, in body axes
+    rows = moments(light, MOST_BYTES // (12 * len(corners)), bool(story.samples.run.attitude.motion))
+    light = light[rows]
     acted = story.samples.run.environment
     share = np.asarray(acted.get("sunlit_fraction", acted.get("sunlit", np.ones(len(story.time)))), float)
     pressure = craft.pressure(light) * share[rows, None]
     colors = np.repeat(packed(colors_of(pressure / max(float(pressure.max()), 1e-300))), 3, axis=1)
     columns = rr.Mesh3D.columns(vertex_colors=colors.ravel())
     picture.log_columns(path, story.samples.index_of(rows), columns.partition([len(faces) * 3] * len(rows)))
+
+
+def moments(light: np.ndarray, most: int, turns: bool) -> np.ndarray:
+    """Rows whose colours are drawn, the first and the last among them, of directions of the light (n, 3) in body axes:
+    evenly in time, or, of a craft that turns by itself, by how far the light has moved over it. most : how many."""
+    last, count = len(light) - 1, max(2, min(MOMENTS, most))
+    if not turns:
+        return np.unique(np.round(np.linspace(0, last, count)).astype(int))
+    step = np.linalg.norm(np.diff(light, axis=0), axis=1)
+    way = np.concatenate([[0.0], np.cumsum(step)]) + 1e-3 * np.linspace(0, 1, last + 1)
+    count = max(count, min(MOST_MOMENTS, most, last + 1))
+    return np.unique(np.append(np.searchsorted(way, np.linspace(0, way[-1], count)[:-1]), last))
 
 
 @dataclass(frozen=True)

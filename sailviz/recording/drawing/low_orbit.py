@@ -13,7 +13,7 @@ import numpy as np
 import rerun as rr
 
 from sailviz.frames import body_axes, quaternion, to_frame, unit
-from sailviz.recording.drawing import cameras, style
+from sailviz.recording.drawing import cameras, lit_shape, style
 from sailviz.recording.drawing.cameras import Camera
 from sailviz.recording.drawing.craft import Glow, log_stowing, log_tether
 from sailviz.recording.drawing.flights import Flight
@@ -175,7 +175,10 @@ def log_craft(picture: Picture, story: Story, names: Names) -> None:
             same = np.full((count, 3), SATELLITE)
             picture.log_pose("/world/rtn/body/shape", index, quaternion=story.spin, scale=same)
     elif craft.pushes or story.setting.craft.parts:
-        craft.log_shape(picture, "/world/rtn/body/shape", True)
+        if lit_shape.is_lit(story):
+            lit_shape.log_facets(picture, story, "/world/rtn/body/shape/facets")
+        else:
+            craft.log_shape(picture, "/world/rtn/body/shape", True)
         picture.log_scale("/world/rtn/body/shape", FILM)
         log_stowing(picture, "/world/rtn/body/shape", craft, index, story.stowed, True)
     else:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from .measure import hue, proportional, same_direction, same_place, same_turn
+from .outlines import outline, same_surface
 from .seen import arrows, body, home, in_body, lines_in_body, outward, poses, seen, some
 
 FRONT, BACK = 2, 3  # of rerun's face_rendering
@@ -12,8 +13,10 @@ GONE = 1e-3  # a scale at which nothing is to be seen
 
 
 def body_pose(f, entity):
-    """A frame at the craft that is turned as /attitude/quaternion says."""
+    """A frame at the craft that is turned as /attitude/quaternion says, its z along /attitude/normal."""
     pose = poses(f, entity)
+    there = ~f.truth.stowed
+    same_direction(pose[there][:, :3, 2], seen(f, entity, f.truth.normal)[there])
     same_turn(pose[:, :3, :3], body(f, entity))
     same_place(pose[:, :3, 3], home(f, entity))
 
@@ -72,7 +75,7 @@ def stowing(f, entity):
 def film(f, entity):
     """The side of the film that is visible from the Sun is golden, the other one blue; its normal is /attitude/normal;
     it bulges away from the light and has the side of the square that is told."""
-    if own_box(f) is not None:
+    if has_own_shape(f):
         own_part(f, entity)
         return
     normal = seen(f, entity, f.truth.normal)
@@ -91,29 +94,26 @@ def film(f, entity):
         assert points[:, 2].max() > 0.03 * size(f, entity)
 
 
-def own_box(f):
-    """Corners, m, of the box round a mesh of one's own as it is told, or round a billowed square sail with a bus by
-    its formula; None of a craft that is drawn as its kind is."""
-    if "mesh" in f.truth.resolved:
-        told = f.truth.resolved["mesh"]
-        return np.array(told["low_m"]), np.array(told["high_m"])
-    shape = (f.truth.resolved.get("device") or {}).get("shape") if "craft_shape" in f.truth.scene else None
-    if shape is None:
-        return None
-    half, depth = shape["side"] / 2, shape["side"] / 2 * (np.tan(shape["cone"]) + 2 * shape["sag"])
-    middle, size = np.array(shape["bus"]["centre"]), np.array(shape["bus"]["size"])
-    return np.minimum([-half, -half, 0], middle - size / 2), np.maximum([half, half, depth], middle + size / 2)
+def has_own_shape(f) -> bool:
+    """Whether a craft is drawn as its scene, or its arrays, say its shape."""
+    return "mesh" in f.truth.resolved or outline(f) is not None
 
 
 def own_part(f, entity):
-    """Of a mesh of one's own all parts together fill the box that is told, in m over its longest side, in the attitude
-    of the row; the lit side of a film looks along -z of the body."""
+    """Of a shape that a scene tells the film lies on its surface, and the bus on its box, out to their edges; of a mesh
+    that came with arrays all parts together fill the box that is told. In m over the longest side, in the attitude of
+    the row; the lit side of a film looks along -z of the body."""
+    own, side = outline(f), float(f.truth.scene["craft_side_m"])
     top = entity.rsplit("/", 1)[0]
-    drawn = [each for each in (f"{top}/film_lit", f"{top}/bus") if each in f.picture.entities]
-    low, high = own_box(f)
-    side = float(f.truth.scene["craft_side_m"])
-    assert abs(side - (high - low).max()) < 1e-9 * side
+    if own is None:
+        told = f.truth.resolved["mesh"]
+        drawn = [each for each in (f"{top}/film_lit", f"{top}/bus") if each in f.picture.entities]
+        low, high = np.array(told["low_m"]), np.array(told["high_m"])
+    assert abs(side - (own.length if own else (high - low).max())) < 1e-9 * side
     for row in some(f, 4):
+        if own is not None:
+            same_surface(own, parts(f, entity, row) * side / size(f, entity), film="/film_" in entity)
+            continue
         points = np.concatenate([parts(f, each, row) for each in drawn]) * side / size(f, entity)
         same_place(points.min(0), low, size=10 * side)
         same_place(points.max(0), high, size=10 * side)

@@ -273,7 +273,11 @@ class Truth:
 
     @cached_property
     def sun(self) -> np.ndarray:
-        """(n, 3) unit vectors from the Earth; without a date the Sun goes evenly round it from the x axis on."""
+        """(n, 3) unit vectors from the Earth; without a date the Sun goes evenly round it from the x axis on. A light
+        that is fixed stands where its scene says."""
+        light = self.resolved.get("light") or {}
+        if light.get("kind") == "fixed":
+            return np.tile(unit(np.array(light["direction"], float)), (len(self), 1))
         if self.seconds is None:
             angle = 2 * np.pi * self.time / (365.25 * DAY)
             return np.stack([np.cos(angle), np.sin(angle) * np.cos(TILT), np.sin(angle) * np.sin(TILT)], -1)

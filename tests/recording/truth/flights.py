@@ -491,6 +491,63 @@ def billowed() -> sailviz.Run:
     )
 
 
+BUS = {"size_m": [1.2, 1.0, 0.8], "centre_m": [0.3, -0.2, -1.5]}
+SAIL = {"kind": "solar-sail", "mass_kg": 5, "film": "jpl-2015", "back": "same"}
+UNEVEN = {
+    "kind": "free",
+    "inertia_kg_m2": [[20e8, 1e8, 0.5e8], [1e8, 26e8, -2e8], [0.5e8, -2e8, 40e8]],  # so slow that its copies show
+    "centre_of_mass_m": [0.06, -0.04, -0.5],
+    "clock_deg": 60,
+    "roll_deg": 25,
+}
+
+
+def turning() -> sailviz.Run:
+    """A square sail that nobody holds turns over, out of the plane; a bus throws its shadow on it, or has that of the
+    film."""
+    from sailviz.shapes.shadows import ray_caster
+
+    shape = {"kind": "square", "side_m": 10, "bus": BUS, "cells": 2, "shadow": ray_caster() == "embreex"}
+    return sailviz.simulate(
+        {
+            "title": "turning",
+            "start": {"kind": "circular", "radius_au": 1, "inclination_deg": 10},
+            "device": SAIL | {"shape": shape},
+            "attitude": UNEVEN | {"pitch_deg": 35, "rates_deg_s": [3e-5, 5e-5, 1e-5]},
+            "propagation": {"duration_d": 100, "outputs": 49},
+        }
+    )
+
+
+def turning_file() -> sailviz.Run:
+    """A craft of a file, alike in no two directions, that turns by itself."""
+    mesh = lopsided()
+    mesh.apply_scale(1e-3)
+    lines = """
+        title = "turning file"
+        start = {kind = "circular", radius_au = 1, inclination_deg = 10}
+        propagation = {duration_d = 90, outputs = 41}
+        [device]
+        kind = "solar-sail"
+        mass_kg = 5
+        film = "jpl-2015"
+        back = "same"
+        shape = {kind = "file", file = "plate.glb", front = "+x", cells = 2, shadow = false}
+        [attitude]
+        kind = "free"
+        inertia_kg_m2 = [4e8, 12e8, 15e8]
+        centre_of_mass_m = [0.2, -0.1, 0.05]
+        pitch_deg = 20
+        clock_deg = 60
+        roll_deg = 25
+        rates_deg_s = [2e-5, 3e-5, 5e-5]
+        """
+    with tempfile.TemporaryDirectory() as folder:
+        mesh.export(Path(folder) / "plate.glb")
+        (Path(folder) / "turning file.toml").write_text(lines)
+        return sailviz.simulate(Path(folder) / "turning file.toml")
+
+
 def competition() -> sailviz.Run:
     """A flyby of a planet of GTOC13, and a sail after it that breaks a rule: it ends far from where it says."""
     from sailviz.checks.gtoc13 import judge, sail
@@ -557,6 +614,12 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "competition": competition,
     "quaternions": quaternions,
     "billowed": billowed,
+    "turning": turning,
+    "turning file": turning_file,
+    "turning low": scene("body/tumbling", propagation__outputs=181, attitude__rates_deg_s=[0.03, 0.02, 0.01]),
+    "swinging": scene("body/swinging-pyramid", propagation__duration_h=1, propagation__outputs=41),
+    "averaged spin": scene("body/ikaros", propagation__outputs=61),
+    "sliding mass": scene("body/offset", propagation__outputs=61),
     "held": scene("wind/held-displaced", propagation__outputs=61),
     "light": scene("wind/flickering-sun", **SMALL),
     "round a planet": round_a_planet,

@@ -8,52 +8,67 @@ import numpy as np
 
 from .measure import same_direction, same_place
 from .now import told
+from .outlines import BLACK, FILM, outline, same_surface
 from .picture import turn
 from .seen import arrows, body, seen, texts
 
 SHADE = [18, 22, 40]
 RAMP = np.array([SHADE, [74, 56, 140], [176, 60, 140], [255, 96, 72], [255, 176, 84]], float)
 UNITS = {"N m": 1.0, "mN m": 1e-3, "µN m": 1e-6, "nN m": 1e-9}
-FILM, BLACK = (0.0723, 0.8554, -0.0030), (0.5, 0.0, 0.0)  # b1, b2, b3 of jpl-2015, and of the bus
+STALE = 30.0  # deg, as far as the light may have moved over a craft whose colours are still those of before
 CLOSE = 9.5  # size of a sail in the close-up
 
 
 def facets(f, entity):
-    """Each facet in the colour of p = c ((b1 + b2) c + b3) over the strongest, dark where it is turned away and where
-    the line to the light meets the box of the bus; at moments from the first row to the last."""
-    told = f.truth.resolved["device"]["shape"]
-    side = float(f.truth.scene["craft_side_m"])
+    """Each facet lies on the shape that the scene tells, in the colour of p = c ((b1 + b2) c + b3) over the strongest,
+    by the side that is lit, dark where a body is turned away and where the line to the light meets the box of the bus;
+    at moments from the first row to the last, between which the light does not move far over it."""
+    own, side = outline(f), float(f.truth.scene["craft_side_m"])
+    assert abs(side - own.length) < 1e-9 * side
     points = np.asarray(f.picture.fixed(entity, "Mesh3D:vertex_positions"), float).reshape(-1, 3, 3) * side
     steps, _ = f.picture.rows(entity, "Mesh3D:vertex_colors")
     assert steps[0] == 0
     assert steps[-1] == len(f.truth) - 1
-    assert len(steps) >= 12
+    assert len(steps) >= min(12, len(f.truth))
+    out = f.truth.outward / np.linalg.norm(f.truth.outward, axis=1, keepdims=True)
+    light = np.array([turn(q).T @ o for q, o in zip(f.truth.quaternion, out, strict=True)])
+    shown = steps[np.searchsorted(steps, np.arange(len(light)), side="right") - 1]
+    assert np.degrees(np.arccos(np.clip(np.sum(light * light[shown], axis=1), -1, 1)).max()) < STALE
     across = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
     normal = across / np.linalg.norm(across, axis=1, keepdims=True)
-    middle, half = np.array(told["bus"]["centre"]), np.array(told["bus"]["size"]) / 2
-    on_bus = np.all(np.abs(points - middle) < half + 1e-4, axis=(1, 2))
-    assert on_bus.sum() == 12
-    pressure, edges = [], []
+    on_bus = own.on_box(points.reshape(-1, 3)).reshape(-1, 3).all(axis=1)
+    same_surface(own, points[~on_bus].reshape(-1, 3), film=True)
+    assert on_bus.sum() == (12 if own.middle is not None else 0)
+    if on_bus.any():
+        same_surface(own, points[on_bus].reshape(-1, 3), film=False)
+    acted, pressure, edges = f.truth.environment, [], []
+    sunlit = np.asarray(acted.get("sunlit_fraction", acted.get("sunlit", np.ones(len(light)))), float)
     for row in steps:
-        out = f.truth.outward[row] / np.linalg.norm(f.truth.outward[row])
-        u = turn(f.truth.quaternion[row]).T @ out
+        u = light[row]
         c = -(normal @ u)
-        b = np.where(on_bus[:, None], BLACK, FILM)
+        b = np.where(on_bus[:, None], BLACK, np.where(c[:, None] > 0, FILM, own.back))
         p = np.where((c > 0) | ~on_bus, np.abs(c) * ((b[:, 0] + b[:, 1]) * np.abs(c) + b[:, 2]), 0.0)
-        near = np.array([meets(points.mean(1), u, middle, half * k) for k in (0.9, 1.1)])
-        shaded = meets(points.mean(1), u, middle, half) & ~on_bus & bool(told["shadow"])
-        pressure.append(np.where(shaded, 0.0, p))
-        edges.append(near[0] != near[1])
+        shaded = edge = np.zeros(len(points), bool)
+        if own.middle is not None and own.shadow:
+            middle, half = own.middle, own.size / 2
+            near = np.array([meets(points.mean(1), u, middle, half * k) for k in (0.9, 1.1)])
+            shaded, edge = meets(points.mean(1), u, middle, half) & ~on_bus, near[0] != near[1]
+            if u[2] * middle[2] > 0:
+                edge = edge | on_bus  # the film shades it in turn
+        pressure.append(np.where(shaded, 0.0, np.abs(p)) * sunlit[row])
+        edges.append(edge)
     pressure = np.array(pressure)
-    for row, own, edge in zip(steps, pressure / pressure.max(), edges, strict=True):
+    thrown = False
+    for row, share, edge in zip(steps, pressure / pressure.max(), edges, strict=True):
         colors = f.picture.color(entity, "Mesh3D:vertex_colors", row)[:, :3].astype(float).reshape(-1, 3, 3)
         assert np.array_equal(colors[:, 0], colors[:, 1])
         assert np.array_equal(colors[:, 0], colors[:, 2])
-        expected = np.stack([np.interp(4 * own, np.arange(5), RAMP[:, k]) for k in range(3)], -1)
+        expected = np.stack([np.interp(4 * share, np.arange(5), RAMP[:, k]) for k in range(3)], -1)
         off = np.abs(colors[:, 0] - expected).max(axis=1)
         assert off[~edge].max() < 2.0, f"a facet is {off[~edge].max():.0f} levels off"
         dark = np.all(colors[:, 0] == SHADE, axis=1) & ~on_bus
-        assert dark.any() == bool(told["shadow"]), "the bus throws a shadow"
+        thrown |= dark.any() and not dark[~on_bus].all()
+    assert own.middle is None or thrown == own.shadow, "the bus throws a shadow"
 
 
 def meets(points, u, middle, half):
@@ -81,7 +96,8 @@ def mass_at(f):
 
 
 def acts_at(f):
-    """(n, 3) view units: where the line of the force on a shape meets its plane; None where there is no torque."""
+    """(n, 3) view units: where the line of the force on a shape meets its plane, three quarters of its size off at
+    most; None where there is no torque."""
     torque = torque_of(f)
     if torque is None:
         return None
@@ -96,6 +112,8 @@ def acts_at(f):
     torque = torque - along[:, None] * force  # what is left turns about the force's line
     # x and y of the point r in the plane z = 0 for which r x F has the torque's parts across z
     place = np.stack([-torque[:, 1] / force[:, 2], torque[:, 0] / force[:, 2], 0 * force[:, 2]], -1)
+    far = np.linalg.norm(place, axis=1, keepdims=True)
+    place = place * np.minimum(1.0, 0.75 * float(f.truth.scene["craft_side_m"]) / far)  # edge-on its line is lost
     view = body(f, "/sail/push")
     return CLOSE / float(f.truth.scene["craft_side_m"]) * np.einsum("nij,nj->ni", view, place)
 

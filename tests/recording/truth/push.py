@@ -11,8 +11,9 @@ from .craft import rim_of
 from .facts import path_word, unit
 from .measure import hue, same_direction, same_place, same_turn
 from .now import PUSHES, told
+from .outlines import outline, same_surface
 from .picture import turn
-from .seen import arrows, home, near, seen, shown, texts
+from .seen import arrows, body, home, near, seen, shown, texts
 
 RAMP = np.array([[74, 56, 140], [176, 60, 140], [255, 96, 72], [255, 176, 84]], float)  # weak to strong
 FOOT = 0.30  # brightness of a wall at the trail
@@ -149,14 +150,27 @@ def ghost(f, entity, name):
     turns = np.array([turn(q) for q in f.picture.fixed(entity, "InstancePoses3D:quaternions")])
     scales = np.asarray(f.picture.fixed(entity, "InstancePoses3D:scales"), float)
     rows = rows_of(f, places)
-    same_turn(turns, body_or_normal(f, turns, rows), 1e-3)
+    own = outline(f)
+    true = body_or_normal(f, turns, rows) if own is None else body(f, "/world")[rows]
+    same_turn(turns, true, 1e-3)
     assert np.ptp(scales) < 1e-6 * scales.max()
     assert 0.03 * f.truth.reach < scales.max() < 0.12 * f.truth.reach
+    if own is not None:
+        points = np.asarray(f.picture.fixed(entity, "Mesh3D:vertex_positions"), float)
+        same_surface(own, points * own.length, film=name in ("lit", "dark"))
     word = hue(f.picture.color(entity, "Mesh3D:albedo_factor")[0])
     if name in ("lit", "dark"):
         assert word == {"lit": "yellow", "dark": "blue"}[name]
-        assert int(f.picture.fixed(entity, "Mesh3D:face_rendering")[0]) == {"lit": 3, "dark": 2}[name]
+        visible = {2: 1.0, 3: -1.0}[int(f.picture.fixed(entity, "Mesh3D:face_rendering")[0])]
+        assert (visible * area_along_z(f, entity) < 0) == (name == "lit"), "the film is seen from its other side"
     return None
+
+
+def area_along_z(f, entity) -> float:
+    """z of a mesh's area vector, by the order of its corners."""
+    points = np.asarray(f.picture.fixed(entity, "Mesh3D:vertex_positions"), float)
+    corners = points[f.picture.fixed(entity, "Mesh3D:triangle_indices")]
+    return float(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2].sum())
 
 
 def body_or_normal(f, turns, rows):

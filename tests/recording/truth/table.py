@@ -132,7 +132,7 @@ SYSTEM = (
     Claim("/world/pan", MOVE, "the time", INERTIAL, "1", landmarks.pan),
     Claim("/world/fence/*", MESH, "/thrust acceleration_m_s2", INERTIAL, "one for all", push.standing),
     Claim("/world/fence/*/edge", LINE, "the wall's top", INERTIAL, "1", push.edge),
-    Claim("/world/ghosts/*", f"{MESH} {LINE} InstancePoses3D", "/attitude normal", INERTIAL, "1/L", push.ghost),
+    Claim("/world/ghosts/*", f"{MESH} {LINE} InstancePoses3D", "/attitude quaternion", INERTIAL, "1/L", push.ghost),
     Claim("/world/references/*", LINE, "/scene, /state, /approximation", INERTIAL, "1/L", system.reference),
     Claim("/world/approximation/*/place", POINT, "/approximation", INERTIAL, "1/L", system.column_place),
     Claim("/world/approximation/*/name", POINT, "/approximation", INERTIAL, "1/L", system.column_place),
@@ -207,18 +207,18 @@ def of_craft(top: str) -> list[Claim]:
         Claim(f"{tether}/tip", POINT, "/attitude normal", BODY, "-1", craft.tether_end),
         Claim(f"{tether}/sheath", f"{SPLAT} {MOVE}", "/thrust on", BODY, "-1", craft.sheath),
     )
-    near = top != "/world/craft"
+    near = top != "/world/craft"  # what presses on facets shows from close by
     rows = [row for row in rows if near or not row.pattern.endswith(("/seams", "/tips", "/facets"))]
     if top != "/world/rtn":
         return [row for row in rows if not row.pattern.startswith(tether)]
-    # no electric sail flies so low; what presses on facets shows from close by
-    other = ("/tethers", "/rim", "/tips", "/hub", "/disc", "/dot", "shape/sheath", "/facets")
+    # no electric sail flies so low
+    other = ("/tethers", "/rim", "/tips", "/hub", "/disc", "/dot", "shape/sheath")
     return [row for row in rows if not row.pattern.endswith(other)]
 
 
 def bus(f, entity):
     """A sail's bus is on the dark side; that of others is in the middle; one of one's own is where its mesh says."""
-    if craft.own_box(f) is not None:
+    if craft.has_own_shape(f):
         craft.own_part(f, entity)
         return
     (craft.shade_bus if f.truth.kind == "solar-sail" else craft.middle)(f, entity)

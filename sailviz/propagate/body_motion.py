@@ -5,8 +5,9 @@ body rate rad/s, the momentum of wheels N m s (body axes), the place of a slidin
 that fills up the vector. Averaged over a spin, the quaternion's first three places hold the axis, and the third of the
 body rate the spin.
 
-All that does not push the sail (gravity, bodies, air on a sphere) is the right-hand side of `dynamics`, whose steering
-is told the normal of the moment; light, by the table of the sail's shape, pushes and turns it here.
+All that does not push the sail (gravity, bodies, air) is the right-hand side of `dynamics`, whose steering is told the
+normal of the moment; light, by the table of the sail's shape, pushes and turns it here. Air on facets is a force of
+that right-hand side which is told the attitude beside it, and tells its torque (`body_air`).
 """
 
 from __future__ import annotations
@@ -52,6 +53,7 @@ class Body(NamedTuple):
     centre_z: float = 0.0
     lit: float = 0.0  # 1: light pushes a shape, whose table stands with the device's numbers
     gradient: float = 0.0  # 1: gravity differs across the craft
+    air: float = 0.0  # 1: air pushes a shape, by `body_air`
     cos_roll: float = 1.0  # of the attitude that a controller follows
     sin_roll: float = 0.0
     law: float = 0.0  # of steering.attitude, that it follows
@@ -75,7 +77,8 @@ class Body(NamedTuple):
 BODY = layout(Body)
 WORK = len(Body._fields)  # where what goes to and fro between the right-hand side and a controller stands, then rows:
 Y, ACCELERATION, LOADS, DONE, RATES = 0, SIZE, SIZE + 3, SIZE + 13, SIZE + 19  # state; m/s2; see `asked`; force, torque
-HEAD = WORK + SIZE + 24  # floats before the rows of vanes and devices
+AIR = SIZE + 24  # what `body_air` says of the moment
+HEAD = WORK + AIR + 8  # floats before the rows of vanes and devices
 
 
 def packed(body: Body, rows: Sequence[Sequence[float]] = ()) -> list[float]:
@@ -103,9 +106,10 @@ def light_at(t, x, y, z, number, p, tables):
 
 
 @inlined
-def light_loads(ux, uy, uz, strength, cx, cy, cz, p, tables):
-    """(force N, torque N m about the centre of mass c) of light along u, all in body axes."""
-    fx, fy, fz, tx, ty, tz = shaped_sail.push(ux, uy, uz, tables, p.places.device + TABLE)
+def flow_loads(ux, uy, uz, strength, cx, cy, cz, tables, at):
+    """(force N, torque N m about the centre of mass c) of light or air along u, all in body axes; strength : N/m2,
+    where the table has 1. at : where the table begins."""
+    fx, fy, fz, tx, ty, tz = shaped_sail.push(ux, uy, uz, tables, at)
     ox, oy, oz = cross(cx, cy, cz, fx, fy, fz)
     return strength * fx, strength * fy, strength * fz, strength * (tx - ox), strength * (ty - oy), strength * (tz - oz)
 
@@ -133,7 +137,8 @@ def passive_loads(t, y, factor, p, b):
         bx, by, bz = ux * ex + uy * ey + uz * ez, ux * fx + uy * fy + uz * fz, ux * gx + uy * gy + uz * gz
         if strength != 0.0:
             cx, cy = b.centre_x + b.slide_share * y[SLIDE], b.centre_y + b.slide_share * y[SLIDE + 1]
-            px, py, pz, tx, ty, tz = light_loads(bx, by, bz, strength, cx, cy, b.centre_z, p, tables)
+            at = p.places.device + TABLE
+            px, py, pz, tx, ty, tz = flow_loads(bx, by, bz, strength, cx, cy, b.centre_z, tables, at)
     dx, dy, dz = 0.0, 0.0, 0.0
     if b.gradient != 0.0:
         dx, dy, dz = gradient_torque(b, y[0], y[1], y[2], p.gravity.mu, ex, ey, ez, fx, fy, fz, gx, gy, gz)
@@ -163,40 +168,54 @@ def turned(y, tx, ty, tz, b, out):
 
 
 @called
-def spin_average(t, y, factor, p, b):
-    """(force N, torque of the light N m, torque of gravity N m), inertial components, over a turn about the axis in the
-    quaternion's first three places."""
-    tables = array_at(p.places.address, p.places.end)
-    zx, zy, zz = y[Q], y[Q + 1], y[Q + 2]
-    size = 1.0 / np.sqrt(zx * zx + zy * zy + zz * zz)
-    zx, zy, zz = zx * size, zy * size, zz * size
+def turn_average(ux, uy, uz, strength, zx, zy, zz, b, tables, at):
+    """(force N, torque N m), inertial components, of light or air along u, over a turn about the axis z."""
     ax, ay, az = (0.0, zz, -zy) if abs(zx) < 0.7 else (-zz, 0.0, zx)
     size = 1.0 / np.sqrt(ax * ax + ay * ay + az * az)
     ax, ay, az = ax * size, ay * size, az * size
     bx, by, bz = cross(zx, zy, zz, ax, ay, az)
+    px, py, pz, tx, ty, tz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    strength = strength / AZIMUTHS
+    along, across, axial = ux * ax + uy * ay + uz * az, ux * bx + uy * by + uz * bz, ux * zx + uy * zy + uz * zz
+    for i in range(AZIMUTHS):
+        c, s = np.cos(2.0 * np.pi * i / AZIMUTHS), np.sin(2.0 * np.pi * i / AZIMUTHS)
+        qx, qy, qz, mx, my, mz = flow_loads(
+            c * along + s * across, c * across - s * along, axial, strength,
+            b.centre_x, b.centre_y, b.centre_z, tables, at,
+        )  # fmt: skip
+        q1, q2, m1, m2 = c * qx - s * qy, s * qx + c * qy, c * mx - s * my, s * mx + c * my
+        px, py, pz = (
+            px + q1 * ax + q2 * bx + qz * zx,
+            py + q1 * ay + q2 * by + qz * zy,
+            pz + q1 * az + q2 * bz + qz * zz,
+        )
+        tx, ty, tz = (
+            tx + m1 * ax + m2 * bx + mz * zx,
+            ty + m1 * ay + m2 * by + mz * zy,
+            tz + m1 * az + m2 * bz + mz * zz,
+        )
+    return px, py, pz, tx, ty, tz
+
+
+@inlined
+def spin_axis(y):
+    """The axis, a unit vector, of an averaged spin."""
+    size = 1.0 / np.sqrt(y[Q] * y[Q] + y[Q + 1] * y[Q + 1] + y[Q + 2] * y[Q + 2])
+    return y[Q] * size, y[Q + 1] * size, y[Q + 2] * size
+
+
+@called
+def spin_average(t, y, factor, p, b):
+    """(force of the light N, its torque N m, torque of gravity N m), inertial components, over a turn about the axis in
+    the quaternion's first three places."""
+    tables = array_at(p.places.address, p.places.end)
+    zx, zy, zz = spin_axis(y)
     px, py, pz, tx, ty, tz, dx, dy, dz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     if b.lit != 0.0:
         ux, uy, uz, strength = light_at(t, y[0], y[1], y[2], factor, p, tables)
-        strength = strength / AZIMUTHS
         if strength != 0.0:
-            along, across, axial = ux * ax + uy * ay + uz * az, ux * bx + uy * by + uz * bz, ux * zx + uy * zy + uz * zz
-            for i in range(AZIMUTHS):
-                c, s = np.cos(2.0 * np.pi * i / AZIMUTHS), np.sin(2.0 * np.pi * i / AZIMUTHS)
-                qx, qy, qz, mx, my, mz = light_loads(
-                    c * along + s * across, c * across - s * along, axial, strength,
-                    b.centre_x, b.centre_y, b.centre_z, p, tables,
-                )  # fmt: skip
-                q1, q2, m1, m2 = c * qx - s * qy, s * qx + c * qy, c * mx - s * my, s * mx + c * my
-                px, py, pz = (
-                    px + q1 * ax + q2 * bx + qz * zx,
-                    py + q1 * ay + q2 * by + qz * zy,
-                    pz + q1 * az + q2 * bz + qz * zz,
-                )
-                tx, ty, tz = (
-                    tx + m1 * ax + m2 * bx + mz * zx,
-                    ty + m1 * ay + m2 * by + mz * zy,
-                    tz + m1 * az + m2 * bz + mz * zz,
-                )
+            at = p.places.device + TABLE
+            px, py, pz, tx, ty, tz = turn_average(ux, uy, uz, strength, zx, zy, zz, b, tables, at)
     if b.gradient != 0.0:
         inverse = 1.0 / np.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
         rx, ry, rz = y[0] * inverse, y[1] * inverse, y[2] * inverse
@@ -214,14 +233,24 @@ def spin_average(t, y, factor, p, b):
     return px, py, pz, tx, ty, tz, dx, dy, dz
 
 
+@inlined
+def air_loads(p):
+    """(force N, torque N m about the centre of mass) of the air, as `body_air` left them when it was last asked: along
+    body axes, of an averaged spin inertial."""
+    tables = array_at(p.places.address, p.places.end)
+    w = p.places.body + WORK + AIR
+    return tables[w], tables[w + 1], tables[w + 2], tables[w + 3], tables[w + 4], tables[w + 5]
+
+
 @called
 def averaged_derivative(t, y, factor, p, b, out):
     """Of a fast spinner: its axis follows its momentum Ia s, m' = torque across / (Ia s), s' = torque along / Ia."""
     px, py, pz, tx, ty, tz, dx, dy, dz = spin_average(t, y, factor, p, b)
     tx, ty, tz = tx + dx, ty + dy, tz + dz
-    zx, zy, zz = y[Q], y[Q + 1], y[Q + 2]
-    size = 1.0 / np.sqrt(zx * zx + zy * zy + zz * zz)
-    zx, zy, zz = zx * size, zy * size, zz * size
+    if b.air != 0.0:
+        _, _, _, dx, dy, dz = air_loads(p)
+        tx, ty, tz = tx + dx, ty + dy, tz + dz
+    zx, zy, zz = spin_axis(y)
     along = tx * zx + ty * zy + tz * zz
     inverse = 1.0 / (b.zz * y[RATE + 2])
     out[Q], out[Q + 1], out[Q + 2] = (
@@ -237,8 +266,8 @@ def averaged_derivative(t, y, factor, p, b, out):
 @inlined
 def asked(t, y, p, px, py, pz, dx, dy, dz, ux, uy, uz, strength, out):
     """(force N, torque N m) of the actuators, body axes, by the callback of `body_control`, and the rates of wheels and
-    sliding mass into out, whose acceleration is known. p: N, of the light; d: N m, of all that turns the craft without
-    them; u, strength: the light."""
+    sliding mass into out, whose acceleration is known. p: N, of light and air; d: N m, of all that turns the craft
+    without them; u, strength: the light."""
     tables = array_at(p.places.address, p.places.end)
     at = p.places.body + WORK
     for j in range(SIZE):
@@ -257,10 +286,14 @@ def asked(t, y, p, px, py, pz, dx, dy, dz, ux, uy, uz, strength, out):
 
 @inlined
 def point_normal(y, p, b):
-    """Tell the model's steering where the craft stands."""
+    """Tell the model's steering where the craft stands, and its air how it is turned."""
+    if b.air != 0.0:
+        tables = array_at(p.places.address, p.places.end)
+        at = p.places.body + WORK + Y
+        for j in range(Q, SIZE):
+            tables[at + j] = y[j]
     if b.motion == AVERAGED:
-        size = 1.0 / np.sqrt(y[Q] * y[Q] + y[Q + 1] * y[Q + 1] + y[Q + 2] * y[Q + 2])
-        p.inertial.x, p.inertial.y, p.inertial.z = y[Q] * size, y[Q + 1] * size, y[Q + 2] * size
+        p.inertial.x, p.inertial.y, p.inertial.z = spin_axis(y)
         return
     _, _, _, _, _, _, gx, gy, gz = axes_of(y[Q], y[Q + 1], y[Q + 2], y[Q + 3])
     p.inertial.x, p.inertial.y, p.inertial.z = gx, gy, gz

@@ -21,6 +21,7 @@ from sailviz.propagate.body_motion import (
     WHEELS,
     Q,
     accelerated,
+    air_loads,
     asked,
     averaged_derivative,
     body_of,
@@ -53,6 +54,9 @@ def body_derivative(t, y, factor, p, out):
     px, py, pz, tx, ty, tz, dx, dy, dz, ux, uy, uz, strength = passive_loads(t, y, factor, p, b)
     accelerated(y, px, py, pz, out)
     tx, ty, tz = tx + dx, ty + dy, tz + dz
+    if b.air != 0.0:  # its force is among those of `derivative`
+        qx, qy, qz, dx, dy, dz = air_loads(p)
+        px, py, pz, tx, ty, tz = px + qx, py + qy, pz + qz, tx + dx, ty + dy, tz + dz
     if b.motion == CONTROLLED:
         qx, qy, qz, mx, my, mz = asked(t, y, p, px, py, pz, tx, ty, tz, ux, uy, uz, strength, out)
         accelerated(y, qx, qy, qz, out)

@@ -50,7 +50,7 @@ class Pushed(NamedTuple):
     drag_area: float = 0.0  # m2, drag coefficient times the area that faces the flow; 0: no drag by attitude
     edge_area: float = 0.0  # m2, the same of what a sail that stands edge-on shows
     mass: float = 0.0  # kg, at which the sail has its strength, a force over the mass; 0: its strength stays
-    blown: int = 0  # 1: the air pushes a shape, whose sides have kinks between them
+    blown: int = 0  # 1: the air pushes a shape, whose sides have kinks between them; 2: of a craft that turns by itself
 
 
 class Callbacks(NamedTuple):

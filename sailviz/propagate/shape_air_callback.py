@@ -23,18 +23,24 @@ FORCE, TORQUE, DRAG, DENSITY, COLUMNS = 0, 3, 6, 7, 8  # of `observe_air`
 
 
 @called
-def air_on_shape(t, x, y, z, vx, vy, vz, nx, ny, nz, p, tables):
-    """(force N in space, torque N m in body axes, drag N against the flow, density kg/m3) of the air that is met."""
+def flow(t, x, y, z, vx, vy, vz, p, tables):
+    """(unit vector along the air that is met, 2 rho V^2 N/m2, density kg/m3); the air turns with the body below."""
     r = np.sqrt(x * x + y * y + z * z)
     latitude, local_time, altitude, f107, _ = surroundings(t, x, y, z, r, p)
     density = air_density(t, r, latitude, local_time, altitude, f107, p, tables)
-    w, at = p.surface.rotation, p.places.shape_air
+    w = p.surface.rotation
     qx, qy, qz = vx + w * y, vy - w * x, vz
     speed = np.sqrt(qx * qx + qy * qy + qz * qz)
-    ux, uy, uz = -qx / speed, -qy / speed, -qz / speed
+    return -qx / speed, -qy / speed, -qz / speed, 2.0 * density * speed * speed, density
+
+
+@called
+def air_on_shape(t, x, y, z, vx, vy, vz, nx, ny, nz, p, tables):
+    """(force N in space, torque N m in body axes, drag N against the flow, density kg/m3) of the air that is met."""
+    ux, uy, uz, k, density = flow(t, x, y, z, vx, vy, vz, p, tables)
+    at = p.places.shape_air
     ex, ey, ez, gx, gy, gz = rolled_axes(x, y, z, vx, vy, vz, nx, ny, nz, tables[at + COS], tables[at + SIN])
     fx, fy, fz, tx, ty, tz = pushed_along(ux, uy, uz, ex, ey, ez, gx, gy, gz, nx, ny, nz, tables, at + TABLE)
-    k = 2.0 * density * speed * speed
     return k * fx, k * fy, k * fz, k * tx, k * ty, k * tz, k * (fx * ux + fy * uy + fz * uz), density
 
 

@@ -171,7 +171,7 @@ def take_sides(t, y, p, tables):
         sides.receding = 1 if side(RECEDING, -1, t, AHEAD, y, p, tables) > 0.0 else 0
     if p.magnetosphere.kind != magnetosphere.NONE:
         sides.windy = 1 if side(WIND, -1, t, AHEAD, y, p, tables) > 0.0 else 0
-    if p.pushed.drag_area > 0.0 or p.pushed.blown != 0:
+    if p.pushed.drag_area > 0.0 or p.pushed.blown == 1:
         sides.facing = 1 if side(FLOW, -1, t, AHEAD, y, p, tables) > 0.0 else -1
     kept = lit == sides.lit and receding == sides.receding and windy == sides.windy
     return not kept or facing != sides.facing
@@ -192,7 +192,7 @@ def _ahead(time, state, parameters, own, number, out):
         span = by_looks(RECEDING, -1, time, span, y, p, tables)
     if p.magnetosphere.kind != magnetosphere.NONE:
         span = by_looks(WIND, -1, time, span, y, p, tables)
-    if p.pushed.drag_area > 0.0 or p.pushed.blown != 0:
+    if p.pushed.drag_area > 0.0 or p.pushed.blown == 1:
         span = by_looks(FLOW, -1, time, span, y, p, tables)
     found[0], found[1], found[2], found[3] = span, 1.0 if jumps else 0.0, 0.0, 0.0
 

@@ -70,7 +70,7 @@ def sky_columns(p: Plan, time: Array, states: Array, normal: Array) -> Columns:
             columns["sunlit_fraction"] = values[sky_callback.SHARE]
     if named.magnetosphere.kind != magnetosphere.NONE:
         columns["in_solar_wind"] = values[sky_callback.WIND] > 0.5
-    if named.pushed.blown:
+    if named.pushed.blown == 1:  # what air does to a craft that turns, its own columns say
         from sailviz.propagate import shape_air_callback as shape_air
 
         blown = shape_air.observe_air(time, states, normal, p.model.parameters)

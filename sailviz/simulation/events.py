@@ -27,7 +27,7 @@ from sailviz.scene.phases import Phase, Until, end_of, until_of
 from sailviz.scene.quantities import ON_A_CIRCLE
 from sailviz.scene.sky import has_sky, magnetosphere_of
 from sailviz.simulation.device import device_of
-from sailviz.simulation.turning import events_of_turning
+from sailviz.simulation.turning import events_of_turning, moves
 
 if TYPE_CHECKING:
     from sailviz.run.arrays import Body
@@ -144,6 +144,10 @@ def quantities_watched(scene: Scene, device: int, phase: Phase | None = None) ->
     if any(stem in OF_FILM for stem in stems):
         return film_quantities(not blown and all(stem in OF_FILM for stem in stems), has_sky(scene))
     if air_on_facets(scene.device) and "air_drag" in stems:
+        if moves(scene):
+            from sailviz.propagate.body_air import body_air_quantities
+
+            return body_air_quantities()
         from sailviz.propagate.shape_air_callback import shape_quantities
 
         return shape_quantities()

@@ -26,7 +26,7 @@ from sailviz.simulation.integration import INTEGRATORS
 from sailviz.simulation.lowered import Columns
 from sailviz.simulation.no_progress import too_many, too_short, too_slow
 from sailviz.simulation.plan import Plan
-from sailviz.simulation.turned_rows import torque_needed, tumbled_once, turned_rows
+from sailviz.simulation.turned_rows import Load, torque_needed, tumbled_once, turned_rows
 from sailviz.simulation.wheel import spins, wheel_columns
 
 FAILURES: dict[int, Callable[[Plan, Any, Patience], str]] = {
@@ -220,6 +220,15 @@ def _needed(p: Plan, time: np.ndarray, states: np.ndarray, push: np.ndarray, env
         axes = frames.rtn(there[:3].T, there[3:6].T)
         return rolled(p, frames.body_axes(frames.stance(axes, normal), axes[..., 1]))
 
-    light = [environment.get(f"light_torque_{axis}_N_m") for axis in "xyz"]
-    known = [torque for torque in light if torque is not None]
-    return torque_needed(p, time, states, axes_at, push, np.stack(known, -1) if known else None)
+    loads = []
+    if "light_torque_x_N_m" in environment:
+        torque = np.stack([environment[f"light_torque_{axis}_N_m"] for axis in "xyz"], -1)
+        loads.append(Load(states[6][:, None] * push, torque))
+    if "air_torque_x_N_m" in environment:
+        from sailviz.propagate import shape_air_callback as shape_air
+
+        there = np.ascontiguousarray(states[:7])
+        normal = dynamics.observe(time, there, np.ones(len(time)), p.model)[0]
+        blown = shape_air.observe_air(time, there, normal, p.model.parameters)
+        loads.append(Load(*(blown[first : first + 3].T for first in (shape_air.FORCE, shape_air.TORQUE))))
+    return torque_needed(p, time, states, axes_at, push, loads)

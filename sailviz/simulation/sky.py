@@ -20,6 +20,7 @@ from sailviz.propagate.parameters import Pushed
 from sailviz.propagate.sky_callback import sky_drag, sky_gravity, sky_steering, sky_thrust
 from sailviz.propagate.sky_edges import sky_edges
 from sailviz.propulsion.devices import CALLED, ELECTRIC_SAIL, NO_DEVICE, SOLAR_SAIL
+from sailviz.scene.attitude import Moving
 from sailviz.scene.body import CustomBody
 from sailviz.scene.device import SolarSail, air_on_facets
 from sailviz.scene.environment import MagneticSphere
@@ -241,6 +242,12 @@ def blown_by_air(scene: Scene, device: LoweredDevice, keywords: dict[str, Any]) 
     from sailviz.simulation.sail_shape import air_on_shape
 
     parts = dict(keywords.get("sky", {}))
+    if isinstance(scene.attitude, Moving):  # whose sides turn within a step, as no law would tell
+        from sailviz.propagate.body_air import body_air
+
+        parts["pushed"] = parts.get("pushed", Pushed())._replace(blown=2)
+        forces = (*device.forces, body_air())
+        return device._replace(forces=forces), keywords | {"sky": parts, "shape_air": air_on_shape(scene)}
     parts["pushed"] = parts.get("pushed", Pushed())._replace(blown=1)
     parts["sides"] = sky.Sides(needed=1)
     forces = (*device.forces, shape_air())

@@ -58,6 +58,11 @@ def turned_rows(p: Plan, craft: TurningPlan, time: Array, states: Array, factor:
     columns: Columns = {}
     if body.lit:
         columns |= by_axis("light_torque", along_body(observed.LIGHT_TORQUE))
+    if body.air:
+        force, drag = values[:, observed.AIR_FORCE : observed.AIR_FORCE + 3], values[:, observed.AIR_DRAG].copy()
+        columns |= {"air_density_kg_m3": values[:, observed.AIR_DENSITY].copy(), "air_drag_N": drag}
+        columns["air_lift_N"] = np.sqrt(np.maximum(0.0, np.sum(force * force, axis=1) - drag * drag))
+        columns |= by_axis("air_torque", along_body(observed.AIR_TORQUE))
     if body.gradient:
         columns |= by_axis("gravity_torque", along_body(observed.GRAVITY_TORQUE))
     if craft.turning.rows or body.wheel_torque > 0 or body.slide_share > 0:
@@ -75,11 +80,19 @@ def by_axis(name: str, vectors: Array) -> Columns:
     return {f"{name}_{axis}_N_m": vectors[:, i].copy() for i, axis in enumerate("xyz")}
 
 
-def torque_needed(p: Plan, time: Array, states: Array, axes_at: AxesAt, push: Array, light: Array | None) -> Columns:
+class Load(NamedTuple):
+    """What light or air does in each row: force (n, 3) N in space, torque (n, 3) N m along the body's axes, about the
+    origin of its shape."""
+
+    force: Array
+    torque: Array
+
+
+def torque_needed(p: Plan, time: Array, states: Array, axes_at: AxesAt, push: Array, loads: list[Load]) -> Columns:
     """Torque about the centre of mass, N m along the body's axes, that holding the prescribed attitude takes:
-    I w' + w x I w less what light and gravity give. Turning is told by differences to either side; NaN where the
+    I w' + w x I w less what light, air and gravity give. Turning is told by differences to either side; NaN where the
     steering jumps there. axes_at : the body's axes (n, 3, 3) at times (n,) and states (7, n); push (n, 3) m/s2 of the
-    device, light (n, 3) N m, about the origin of its shape, where there is any."""
+    device; loads : of light and air, where they push a shape."""
     inertia, centre = mass_properties(p.scene)
     x, v = states[:3].T, states[3:6].T
     r, mu = np.linalg.norm(x, axis=1)[:, None], p.body.mu
@@ -96,8 +109,8 @@ def torque_needed(p: Plan, time: Array, states: Array, axes_at: AxesAt, push: Ar
     jumps = np.maximum(np.linalg.norm(ahead, axis=1), np.linalg.norm(behind, axis=1)) > 100 * APART
     rate, change = (ahead - behind) / (2 * h), (ahead + behind) / h**2
     torque = change @ inertia + np.cross(rate, rate @ inertia)
-    if light is not None:
-        torque -= light - np.cross(centre, states[6][:, None] * frames.to_frame(now, push))
+    for load in loads:
+        torque -= load.torque - np.cross(centre, frames.to_frame(now, load.force))
     section = p.scene.attitude
     if section is not None and section.gravity_gradient:
         up = frames.to_frame(now, x / r)

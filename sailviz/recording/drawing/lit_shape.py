@@ -16,6 +16,7 @@ from sailviz.recording.drawing import style
 from sailviz.recording.drawing.log import Picture, f4
 from sailviz.recording.drawing.phrases import amount
 from sailviz.recording.drawing.story import Story
+from sailviz.run.arrays import CraftPart
 
 RAMP = np.array([[18, 22, 40], *style.PUSH_RAMP], float)  # in the shade, then weak to strong
 MOMENTS = 24  # of the colours along a flight, fewer of large meshes
@@ -23,6 +24,7 @@ MOST_MOMENTS = 240  # of a craft that turns by itself
 MOST_BYTES = 1_200_000  # of all colours
 MOST_FACETS = 20_000  # beyond which only films and bodies are told apart
 SHORT, LONGER = 2.5, 4.0  # length of the torque: with the root of its share of the largest
+FLAT = 1e-9  # of a cosine, within which facets are of one plane
 NO_LEVER = 1e-6  # of the size, at which a torque is rounding
 REACH = 0.75  # of the size, as far as the force's line is followed to where it meets the shape's plane
 UNITS = ((1.0, "N m"), (1e-3, "mN m"), (1e-6, "µN m"), (1e-9, "nN m"))
@@ -47,11 +49,22 @@ def packed(colors: np.ndarray) -> np.ndarray:
 
 
 def is_lit(story: Story) -> bool:
-    """Whether facets are drawn in the colours of their pressure."""
+    """Whether facets are drawn in the colours of their pressure: in a low orbit where they may differ, since one plane
+    of film says more by the colours of its sides, which tell how it stands."""
     craft = story.setting.craft
     facets = sum(len(part.faces) for part in craft.parts)
-    stowed = bool(story.stowed.any())
-    return craft.pressure is not None and facets <= MOST_FACETS and story.near.by_light and not stowed
+    if craft.pressure is None or facets > MOST_FACETS or not story.near.by_light or bool(story.stowed.any()):
+        return False
+    return not story.frame.low or not is_plane(craft.parts)
+
+
+def is_plane(parts: tuple[CraftPart, ...]) -> bool:
+    """Whether a craft is one plane of film."""
+    if len(parts) != 1 or not parts[0].film:
+        return False
+    a, b, c = np.moveaxis(parts[0].corners[parts[0].faces], 1, 0)
+    normal = unit(np.cross(b - a, c - a))
+    return bool(np.all(np.abs(normal @ normal[0]) > 1 - FLAT))
 
 
 def lit_words(story: Story) -> list[str]:

@@ -117,9 +117,7 @@ def _flown_alone(scene: Scene) -> Faults:
     if scene.propagation.integrator not in ("auto", "dop853"):
         found.append(("propagation.integrator", f'{scene.propagation.integrator} {words}: "dop853"'))
     if scene.device.drag_area == "attitude":
-        found.append(("device.drag_area", f'"attitude" {words}: give an area'))
-    if isinstance(scene.device, SolarSail) and scene.device.shape is not None and scene.device.shape.air is not None:
-        found.append(("device.shape.air", f"air on a shape {words}: leave it out, or give an area"))
+        found.append(("device.drag_area", f'"attitude" {words}: give shape.air, or an area'))
     if start_of(scene).held:
         found.append(("start.kind", f"{scene.start.kind}: an orbit held by its steering {words}"))
     return found

@@ -519,6 +519,25 @@ def turning() -> sailviz.Run:
     )
 
 
+def turning_low() -> sailviz.Run:
+    """The same in a low orbit, where air turns it too, in and out of the Earth's shadow."""
+    from sailviz.shapes.shadows import ray_caster
+
+    shape = {"kind": "square", "side_m": 10, "bus": BUS, "cells": 2, "shadow": ray_caster() == "embreex"}
+    return sailviz.simulate(
+        {
+            "title": "turning low",
+            "body": "earth",
+            "start": {"kind": "circular", "altitude_km": 500, "inclination_deg": 40},
+            "light": {"kind": "fixed", "direction": [0.8, 0.6, 0], "distance_au": 1},
+            "environment": {"atmosphere": {"kind": "exponential", "density_kg_m3": 1e-14, "scale_height_km": 60}},
+            "device": SAIL | {"shape": shape | {"air": {"law": "hyperthermal"}}},
+            "attitude": UNEVEN | {"inertia_kg_m2": [20, 26, 40], "pitch_deg": 35, "rates_deg_s": [0.02, 0.03, 0.01]},
+            "propagation": {"duration_h": 3, "outputs": 121},
+        }
+    )
+
+
 def turning_file() -> sailviz.Run:
     """A craft of a file, alike in no two directions, that turns by itself."""
     mesh = lopsided()
@@ -616,7 +635,8 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "billowed": billowed,
     "turning": turning,
     "turning file": turning_file,
-    "turning low": scene("body/tumbling", propagation__outputs=181, attitude__rates_deg_s=[0.03, 0.02, 0.01]),
+    "turning low": turning_low,
+    "tumbling": scene("body/tumbling", propagation__outputs=61),
     "swinging": scene("body/swinging-pyramid", propagation__duration_h=1, propagation__outputs=41),
     "averaged spin": scene("body/ikaros", propagation__outputs=61),
     "sliding mass": scene("body/offset", propagation__outputs=61),

@@ -31,16 +31,17 @@ def fly_around(
     radius: float,
     anomalies: np.ndarray,
     smoothing: float,
-    flown: Callable[[], None],
+    flown: Callable[[Unknowns | None], None],
 ) -> Around:
     """Flights from departure points (n,) rad grown out of a planar one: at once, from their neighbours, or, where both
-    fail, by bending the orbits from coplanar circles, the target's of the radius given. flown() is called once per
-    point."""
+    fail, by bending the orbits from coplanar circles, the target's of the radius given. flown(flight or None) is
+    called once per point."""
 
     def embedded(anomaly: float) -> Unknowns | None:
         x, residual = problem.search(problem.embedded(planar, anomaly), smoothing)
-        flown()
-        return x if residual <= NEAR and problem.hamiltonian(x) > 0 else None
+        found = x if residual <= NEAR and problem.hamiltonian(x) > 0 else None
+        flown(found)
+        return found
 
     def bent(anomaly: float) -> Bent:
         found = problem.bend(problem.embedded(planar, anomaly), radius, smoothing)

@@ -8,12 +8,13 @@ equatorial or retrograde orbits.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from sailviz.design.minimum_time import costates
+from sailviz.design.minimum_time.effort import Effort
 from sailviz.design.minimum_time.kepler_orbit import KeplerOrbit, turned
 from sailviz.design.minimum_time.state_costate import COSTATES, POSITION, VELOCITY, Sail, kepler_rates
 from sailviz.design.minimum_time.unknowns import LOOSE, NEAR, SHARPER, Unknowns, columns, off_unit_length, solved
@@ -39,11 +40,13 @@ class Bent(NamedTuple):
 
 @dataclass(frozen=True)
 class OrbitProblem:
-    """Fastest flight of a sail from one orbit to another; the departure of its Unknowns is a true anomaly rad."""
+    """Fastest flight of a sail from one orbit to another; the departure of its Unknowns is a true anomaly rad. Its
+    searches end with the effort."""
 
     origin: KeplerOrbit
     target: KeplerOrbit
     sail: Sail
+    effort: Effort = field(default_factory=Effort, compare=False)
 
     def residuals(self, batch: np.ndarray, departure: float, tolerance: float, smoothing: float) -> np.ndarray:
         """(m, 8): what m rows of packed unknowns leave of the target's orbit (6), of the condition for a free arrival,
@@ -65,9 +68,11 @@ class OrbitProblem:
 
     def search(self, unknowns: Unknowns, smoothing: float = 0.0, tolerance: float = LOOSE) -> tuple[Unknowns, float]:
         """The solution near some unknowns at their departure anomaly, and its residual."""
-        return solved(
-            lambda batch: self.residuals(batch, unknowns.departure, tolerance, smoothing), unknowns, tolerance
-        )
+
+        def residuals(batch: np.ndarray) -> np.ndarray:
+            return self.residuals(batch, unknowns.departure, tolerance, smoothing)
+
+        return solved(self.effort.watched(residuals), unknowns, tolerance)
 
     def sharpen(self, unknowns: Unknowns) -> tuple[Unknowns, float]:
         """The solution of the true sail from one whose switch was rounded off, and its residual."""
@@ -83,6 +88,11 @@ class OrbitProblem:
         y = self.start(unknowns)[None]
         return float(np.sum(kepler_rates(y) * y[:, COSTATES]))
 
+    def bent(self, share: float, radius: float) -> OrbitProblem:
+        """The problem between orbits that are this share of the way from coplanar circles to their true shape."""
+        origin = self.origin.bent(share, self.origin, self.origin.semi_major_axis)
+        return replace(self, origin=origin, target=self.target.bent(share, self.origin, radius))
+
     def bend(self, unknowns: Unknowns, radius: float, smoothing: float = 0.0) -> Bent:
         """The flight that grows out of the one between coplanar circles, the target's of some radius: shares of the
         true shape rise in steps that adapt."""
@@ -90,10 +100,8 @@ class OrbitProblem:
         before, at = None, 0.0
         while share < 1.0:
             following = min(1.0, share + step)
-            origin = self.origin.bent(following, self.origin, self.origin.semi_major_axis)
-            target = self.target.bent(following, self.origin, radius)
             guess = x if before is None else x.ahead(before, following - share, share - at)
-            y, miss = OrbitProblem(origin, target, self.sail).search(guess, smoothing)
+            y, miss = self.bent(following, radius).search(guess, smoothing)
             if miss > NEAR:
                 step *= 0.4
                 if step < SMALLEST_BEND:

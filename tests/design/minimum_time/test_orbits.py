@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -10,9 +11,11 @@ import pytest
 from sailviz import ephemeris
 from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.design.minimum_time import circle_to_circle, costates, orbit_to_orbit, rendezvous
+from sailviz.design.minimum_time.effort import FOUND, IMPOSSIBLE, NOT_FOUND, TIME_LIMIT, Effort
 from sailviz.design.minimum_time.planet_conditions import planet_state
 from sailviz.design.minimum_time.state_costate import SPEED_UNIT, TIME_UNIT, canonical_sail
 from sailviz.elements import Elements, elements
+from sailviz.propulsion.solar_sail import Film
 
 
 def orbit(a, e, i, node, perihelion):
@@ -149,3 +152,25 @@ def test_flight_that_is_not_found_says_so():
     assert not found.feasible
     assert "inside the Sun" in found.reason
     assert np.isnan(found.time)
+
+
+def test_a_film_that_reflects_nothing_keeps_its_angular_momentum_and_so_its_orbit():
+    found = orbit_to_orbit(EARTH, MARS, Film(0.5, 0.0, 0.0), 1e-3)
+    assert found.ending.outcome == IMPOSSIBLE
+    assert "along the Sun line only" in found.reason
+
+
+def test_a_search_out_of_time_has_a_minimum_with_a_mark_or_tells_of_a_true_flight(monkeypatch):
+    """From six departure points an ideal sail's flights to Venus are known first, their minimum a moment later."""
+    whole = orbit_to_orbit(EARTH, VENUS, "ideal", 1e-3, starts=6)
+    early, late = Effort(), Effort()
+    monkeypatch.setattr(early, "count", lambda what, n=1: early.end(TIME_LIMIT) if "departure" in what else None)
+    found = orbit_to_orbit(EARTH, VENUS, "ideal", 1e-3, starts=6, effort=early)
+    assert (found.ending.outcome, found.ending.stopped) == (NOT_FOUND, TIME_LIMIT)
+    (days,) = re.search(r"from a true anomaly of .* deg, not the best, it takes (.*) d", found.reason).groups()
+    assert whole.time / DAY < float(days) < 1.1 * whole.time / DAY
+    monkeypatch.setattr("sailviz.design.minimum_time.orbits.distinct", lambda minima: late.end(TIME_LIMIT) or minima)
+    found = orbit_to_orbit(EARTH, VENUS, "ideal", 1e-3, starts=6, effort=late)
+    assert (found.ending.outcome, found.ending.stopped) == (FOUND, TIME_LIMIT)
+    assert found.time == whole.time
+    assert "stopped by its time limit" in found.claim

@@ -148,6 +148,15 @@ def build(
     return LightTable(np.concatenate([head, rows[again].ravel()]), "none" if shadows is None else shadows.backend)
 
 
+def without_ring(table: LightTable) -> LightTable:
+    """A table for bicubic reading as the one that is read bilinearly: the nodes of the faces alone."""
+    ring, cells = int(table.numbers[RING]), table.cells
+    head, width = table.numbers[:NODES].copy(), cells + 1 + 2 * ring
+    head[RING] = 0.0
+    nodes = table.numbers[NODES:].reshape(6, width, width, COLUMNS)[:, ring : width - ring, ring : width - ring]
+    return LightTable(np.concatenate([head, nodes.ravel()]), table.backend)
+
+
 def distinct(u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """(different directions (m, 3), for each of u (n, 3) its place among them)."""
     _, first, again = np.unique(np.round(u, 13) + 0.0, axis=0, return_index=True, return_inverse=True)

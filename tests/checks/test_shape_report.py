@@ -50,6 +50,33 @@ def test_a_flat_file_is_pushed_as_the_flat_sail(flat):
     assert facts["errors"]["table_force"] < 1e-3
 
 
+def test_a_billowed_scene_is_told_for_both_readings_of_its_table(tmp_path):
+    """Curves between the nodes err a third as much, or less; the first line is of what the scene flies by."""
+    scene = tmp_path / "billow.toml"
+    scene.write_text("""
+        title = "billow"
+        start = {kind = "circular", radius_au = 1}
+        steering = {kind = "sun-facing"}
+        propagation = {duration_d = 1, outputs = 2}
+        [device]
+        kind = "solar-sail"
+        film = "jpl-2015"
+        back = "black"
+        mass_kg = 5
+        shape = {kind = "square", side_m = 40, cone_deg = 3, sag = 0.03, shadow = false, interpolation = "bicubic"}
+        """)
+    found = run(scene, "--json")
+    facts = json.loads(found.output)
+    off = {word: facts["errors_by"][word]["table_force"] for word in ("bilinear", "bicubic")}
+    assert facts["errors"] == facts["errors_by"]["bicubic"]
+    assert off["bicubic"] < 4e-4
+    assert off["bicubic"] < off["bilinear"] / 3
+    words = run(scene).output
+    assert "cells, bicubic, no rays" in words
+    for word, most in off.items():
+        assert f"{word:<9} {most:.1e} at most" in words
+
+
 def test_the_report_says_everything_in_words(flat):
     found = run(flat, "--unit", "m", "--cells", 4)
     assert found.exit_code == 0

@@ -61,6 +61,12 @@ def test_a_billowed_sail_is_read_within_the_sources_error(interpolation, cells, 
     assert wrong[u[:, 2] > 0.5].max() < most_near
 
 
+def test_a_table_for_bicubic_reading_holds_the_bilinear_one():
+    both = {word: build(billowed_sail(), 8, shadow=False, interpolation=word) for word in ("bilinear", "bicubic")}
+    found = light_table.without_ring(both["bicubic"])
+    np.testing.assert_allclose(found.numbers, both["bilinear"].numbers, rtol=0, atol=1e-12 * 1600 * 40)
+
+
 def test_a_bare_sail_inside_its_cone_is_exact():
     shape = Shape((membranes.square(40.0, FILM, np.radians(3), 0.03),))
     u = random_directions()

@@ -14,6 +14,10 @@ if TYPE_CHECKING:
 
 OPTICS = ", ".join(f'"{word}"' for word in WITH_OPTICS if word != "ideal")
 NEEDS_OPTICS = f"needs the optics of the film: {OPTICS}, or film = {{cr, cs, Bf, Bb, ef, eb}}"
+NO_AGE_OF_A_SHAPE = (
+    "the forces on a shape stand in a table of a film that stays as it is: fly it flat, without device.shape, or give "
+    "the shape the film of one age, film = {cr, cs, Bf, Bb, ef, eb}"
+)
 NO_HEAT = "a film that radiates nothing has no temperature: its emissivities are 0"
 
 
@@ -43,7 +47,7 @@ def _ageing(scene: Scene) -> Faults:
     if not has_optics(device):
         found.append((where, NEEDS_OPTICS))
     if device.shape is not None:
-        found.append((where, "ageing is known of flat sails only, not of one with a shape"))
+        found.append((where, NO_AGE_OF_A_SHAPE))
     if device.control is not None:
         found.append(
             (where, "a film that darkens when it is told to ages in a way that is not known: control or ageing")

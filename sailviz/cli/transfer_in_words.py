@@ -11,14 +11,17 @@ from sailviz.constants import AU, DAY
 if TYPE_CHECKING:
     import numpy as np
 
+    from sailviz.design.minimum_time import Transfer
     from sailviz.transfers import Solution
+
+MOST_OF = 0.5  # of a flight at partial voltage: from there on a stronger sail is hardly faster
 
 
 def words(found: Solution) -> Iterator[str]:
     """What was found, line by line."""
     import numpy as np
 
-    from sailviz.design.minimum_time import Rendezvous
+    from sailviz.design.minimum_time import Rendezvous, Transfer
     from sailviz.transfers import device_words, path_of
 
     flight = found.flight
@@ -47,6 +50,8 @@ def words(found: Solution) -> Iterator[str]:
     rows += [("closest to the Sun", f"{np.linalg.norm(position, axis=1).min() / AU:.4f} au")]
     if len(switches):
         rows += [("thrust switches at", ", ".join(f"{t / DAY:.3f}" for t in switches) + " d")]
+    if isinstance(flight, Transfer) and flight.throttle is not None:
+        rows += _partial_voltage(flight)
     rows += [("residual", f"{flight.residual:.1e}, Hamiltonian drift {flight.hamiltonian_drift:.1e}")]
     rows += [("local solutions", f"{flight.solutions} found")]
     for name, value in rows:
@@ -57,6 +62,23 @@ def words(found: Solution) -> Iterator[str]:
         for day, time in zip(flight.window.departures, flight.window.times, strict=True):
             took = f"{time / DAY:9.3f}" if np.isfinite(time) else "none found"
             yield f"  {np.datetime_as_string(day, 'D')}       {took}"
+
+
+def _partial_voltage(flight: Transfer) -> list[tuple[str, str]]:
+    """What the throttle between 0 and 1 means."""
+    if flight.throttle is None:
+        return []
+    low, high = flight.throttle
+    share = sum(arc.end - arc.start for arc in flight.arcs if arc.kind == "singular")
+    said = [
+        ("arcs", ", ".join(f"{arc.kind} {(arc.end - arc.start) / DAY:.3f} d" for arc in flight.arcs)),
+        ("partial voltage", f"throttle {low:.2f}-{high:.2f} for {share / DAY:.0f} of {flight.time / DAY:.0f} d;"),
+        ("", "a sail that can only be on or off approaches this time by fast switching,"),
+        ("", "and no on/off flight attains it"),
+    ]
+    if share > MOST_OF * flight.time:
+        said.append(("", "more thrust would gain little: the sail cannot brake, since its thrust points outwards"))
+    return said
 
 
 def _unit(found: Solution) -> float:

@@ -15,6 +15,26 @@ from sailviz.steering import attitude
 from sailviz.steering.optimal import steer, towards_primer
 from sailviz.steering.primers import EDGE, locally_optimal_primer, locally_optimal_readiness, lyapunov_primer, readiness
 
+THRUST, COAST, SINGULAR = range(3)  # arcs of a minimum-time flight, by their place among their words
+ARC_KINDS = ("thrust", "coast", "singular")
+
+
+@inlined
+def arc_throttle(t, p, tables):
+    """Throttle of the arc that is flown at t: 1, 0, or on a singular arc what its table says."""
+    at = p.places.steering
+    arcs = int(tables[at])
+    kind = int(tables[at + attitude.COLUMNS * arcs + 1])
+    for i in range(arcs, 0, -1):
+        row = at + attitude.COLUMNS * i
+        if t < tables[row]:
+            kind = int(tables[row + 1])
+    if kind != SINGULAR:
+        return 1.0 if kind == THRUST else 0.0
+    first = at + attitude.COLUMNS * (1 + arcs)
+    share, _, _ = attitude.table_row(t, tables, first, int(tables[at + 1]), attitude.CUBIC)
+    return share
+
 
 @called
 def primer(t, x, y, z, vx, vy, vz, p, tables):
@@ -28,13 +48,21 @@ def primer(t, x, y, z, vx, vy, vz, p, tables):
         return sense * lx, sense * ly, sense * lz, ready
     if kind == attitude.LYAPUNOV:
         return lyapunov_primer(x, y, z, vx, vy, vz, p.primer.mu, tables, p.places.steering)
+    if kind == attitude.ARCS:
+        skipped = 1 + int(tables[p.places.steering]) + int(tables[p.places.steering + 1])
+        first, rows = p.places.steering + attitude.COLUMNS * skipped, p.table.rows - skipped
+        lx, ly, lz = attitude.table_row(t, tables, first, rows, p.table.interpolation)
+        return lx, ly, lz, arc_throttle(t, p, tables)
     lx, ly, lz = attitude.table_row(t, tables, p.places.steering, p.table.rows, p.table.interpolation)
     return lx, ly, lz, 1.0
 
 
 @inlined
 def throttle(h, ready, p):
-    """Of a law that finds h along its primer: 1 or 0 from a table, and with soft edges where the state steers."""
+    """Of a law that finds h along its primer: 1 or 0 from a table, and with soft edges where the state steers; what the
+    arc asks for where the law flies arcs."""
+    if p.primer.kind == attitude.ARCS:
+        return ready
     if h <= 0.0:
         return 0.0
     return 1.0 if p.primer.kind == attitude.PRIMER else ready * readiness(h / EDGE)

@@ -51,7 +51,7 @@ UNSAID = {  # by table, keys without which scenes were complete before they were
     "device": ("edge_area", "name", "steering", "shape", "back", "roll", "ageing", "hottest", "wheel"),
     "device.shape": ("air",),
     "expect": ("device",),
-    "steering": ("in_shadow", "minimum_perigee", "margin"),
+    "steering": ("in_shadow", "minimum_perigee", "margin", "arcs"),
 }
 
 

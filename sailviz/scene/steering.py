@@ -110,13 +110,23 @@ class PrimerSteering(Section):
     in_shadow: InShadow | None = None
 
 
+class Arc(Section):
+    """A stretch of a minimum-time flight of an electric sail, at full thrust, without, or with the share of it that
+    keeps the primer at the angle of the switch."""
+
+    kind: Literal["thrust", "coast", "singular"]
+    duration: Annotated[Time, POSITIVE]
+
+
 class OptimalSteering(PrimerSteering):
     """A minimum-time flight from its initial costates: three of a planar flight, for the radius, the radial and the
     transverse speed (mu = 1, distance of the start = 1), or six, for position and velocity (mu = 1 au = 1). Only their
-    ratios steer: all may be scaled alike, whatever H is then."""
+    ratios steer: all may be scaled alike, whatever H is then. Without arcs the thrust switches where the primer says
+    so; a singular arc has to be told."""
 
     kind: Literal["optimal"]
     costates: Annotated[list[float], Field(min_length=3, max_length=6)]
+    arcs: Annotated[list[Arc], Field(min_length=1, max_length=1000)] | None = None
 
     @model_validator(mode="after")
     def _count(self) -> Self:

@@ -52,12 +52,12 @@ def _felt(scene: Scene, device: Devices) -> Scene:
     return scene.model_copy(update={"environment": around.model_copy(update=changes)}) if changes else scene
 
 
-def schedules(scene: Scene, table: Array | None) -> tuple[Schedule, list[Schedule]]:
+def schedules(scene: Scene, table: Array | None, jumps: tuple[float, ...] = ()) -> tuple[Schedule, list[Schedule]]:
     """The thrust of the first device, with breaks wherever the thrust of any device has one, and that of each of the
-    others. table : of the first one's steering."""
+    others. table, and jumps s : of the first one's steering."""
     if not scene.beside:
-        return schedule(scene, table), []
-    first = schedule(_felt(scene, scene.device), table)
+        return schedule(scene, table, jumps), []
+    first = schedule(_felt(scene, scene.device), table, jumps)
     others = [schedule(_felt(scene.alone(device), device), None) for device in scene.beside]
     breaks = np.unique(np.concatenate([each.breaks for each in (first, *others)]))
     histories: dict[str, np.ndarray] = {}

@@ -53,6 +53,7 @@ class LoweredSteering(NamedTuple):
     callback: Callback | None = None
     steer_as: tuple[int, Sequence[float]] = (0, ())  # the sail of a primer law: id and parameters
     primer_kind: int = 0
+    breaks: tuple[float, ...] = ()  # s, where its thrust jumps
     by_light: by_light.Parameters = by_light.Parameters()  # of a law that counts from the light
 
 

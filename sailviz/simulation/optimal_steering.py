@@ -1,35 +1,84 @@
-"""A minimum-time flight of a scene: from its initial costates to the primer that its sail follows in time."""
+"""A minimum-time flight of a scene: from its initial costates to the primer that its sail follows in time, and to the
+arcs that it flies, where it says so."""
 
 from __future__ import annotations
+
+from itertools import pairwise
 
 import numpy as np
 
 from sailviz import frames
 from sailviz.constants import MU_SUN
 from sailviz.design.minimum_time.replay import Solved, from_planar, primer_history
+from sailviz.design.minimum_time.singular_arcs import Arc
 from sailviz.errors import Fault, SceneError
+from sailviz.propagate.primer_callback import ARC_KINDS
+from sailviz.steering import attitude
 from sailviz.steering.optimal import optimal_pitch
 
 
 def primer_table(scene, position, velocity, device, characteristic_acceleration, begin=0.0):
-    """Rows (n, 7): time s, primer (3), its rate (3), inertial, from `begin` s to the end of the run; and (time s,
-    "thrust on" | "thrust off") of every switch.
+    """Rows (n, 7): time s, primer (3), its rate (3), inertial, from `begin` s to the end of the run, or of its arcs;
+    (time s, "thrust on" | "thrust off") of every switch; and times, s, at which the thrust jumps otherwise.
+
+    Of a flight in arcs the rows that `primer_callback` reads of them stand first.
 
     position m, velocity m/s (3,) at `begin`; device : the sail that the law reckons with, a name or a Film. SceneError
     where the costates lead nowhere.
     """
     duration, numbers = scene.propagation.duration - begin, np.asarray(scene.steering.costates, dtype=float)
+    arcs = _arcs(scene.steering.arcs or [])
+    if arcs:
+        duration = arcs[-1].end
     try:
         if len(numbers) == 3:
             start = planar_start(position, velocity, numbers)
             radius = float(np.linalg.norm(position))
-            solved = from_planar(start, radius, duration, device, characteristic_acceleration)
+            solved = from_planar(start, radius, duration, device, characteristic_acceleration, arcs)
         else:
-            solved = Solved(position, velocity, numbers, duration, device, characteristic_acceleration)
+            solved = Solved(position, velocity, numbers, duration, device, characteristic_acceleration, arcs)
         found = primer_history(solved)
     except ValueError as error:
         raise SceneError([Fault("steering.costates", f"{error}.")], scene.source) from None
-    return np.column_stack([begin + found.time, found.primer, found.rate]), _switches(found, device, begin)
+    rows = np.column_stack([begin + found.time, found.primer, found.rate])
+    if not arcs:
+        return rows, _switches(found, device, begin), ()
+    return np.vstack([_arc_rows(arcs, found, begin), rows]), _arc_switches(arcs, begin), _arc_breaks(arcs, begin)
+
+
+def _arcs(given):
+    """Arcs of a scene with their starts and ends, s."""
+    edges = np.concatenate([[0.0], np.cumsum([arc.duration for arc in given])]).tolist()
+    return tuple(Arc(arc.kind, a, b) for arc, (a, b) in zip(given, pairwise(edges), strict=True))
+
+
+def _arc_switches(arcs, begin):
+    """(time s, word) where thrust begins and ends, whatever share of it there is between."""
+    pairs = [(a, b) for a, b in pairwise(arcs) if (a.kind == "coast") != (b.kind == "coast")]
+    return tuple((begin + b.start, "thrust off" if b.kind == "coast" else "thrust on") for _, b in pairs)
+
+
+def _arc_rows(arcs, found, begin):
+    """Rows (1 + k + m, 7) before those of the primer: the numbers k and m; the end, s, and the kind of each arc; and
+    over time the throttle on all that are singular.
+
+    In time rather than by the craft's state: the throttle that keeps the primer of this table at its switch answers a
+    small error of the place so that it grows, a thousandfold on the way to Saturn.
+    """
+    throttle = [attitude.table(begin + time, share, 0 * time, 0 * time, "cubic") for time, share in found.throttle]
+    m = sum(map(len, throttle))
+    head = np.zeros((1 + len(arcs), attitude.COLUMNS))
+    head[0, :2] = len(arcs), m
+    for row, arc in zip(head[1:], arcs, strict=True):
+        row[:2] = begin + arc.end, ARC_KINDS.index(arc.kind)
+    return np.vstack([head, *throttle])
+
+
+def _arc_breaks(arcs, begin):
+    """Times, s, at which steps begin and end so that only a short one has an arc's end in it: a moment before and a
+    moment after, where nothing depends on which of two arcs a step's last stage takes for its own."""
+    beside = 1e-12 * arcs[-1].end
+    return tuple(begin + arc.end + side * beside for arc in arcs[:-1] for side in (-1, 1))
 
 
 def _switches(found, device, begin):

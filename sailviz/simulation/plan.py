@@ -124,7 +124,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
     if steering is not None:
         steered = LoweredSteering(attitude.USER)
     turning = turning_of(scene, steered)
-    when, times_beside = schedules(scene, steered.table)
+    when, times_beside = schedules(scene, steered.table, steered.breaks)
     if phase is not None:
         times_beside = in_phase(times_beside, [phase.state_of(device).level for device in scene.beside])
     own_switches = named_switches(scene, steered.switches)

@@ -160,13 +160,16 @@ def _optimal(steering: OptimalSteering, flight: Flight) -> LoweredSteering:
     from sailviz.simulation.optimal_steering import primer_table
 
     sail_of_law = steering.reckons_with or flight.sail
-    rows, switches = primer_table(
+    rows, switches, breaks = primer_table(
         flight.scene, flight.position, flight.velocity, sail_of_law, flight.strength, flight.begin
     )
     # the times of another sail's switches are not quite those of this flight
     switches = switches if steering.reckons_with is None else ()
-    lowered = LoweredSteering(attitude.PRIMER, table=rows, interpolation=attitude.CUBIC, switches=switches)
-    return _towards_primer(steering, flight, lowered)
+    lowered = LoweredSteering(
+        attitude.PRIMER, table=rows, interpolation=attitude.CUBIC, switches=switches, breaks=breaks
+    )
+    lowered = _towards_primer(steering, flight, lowered)
+    return lowered if steering.arcs is None else lowered._replace(primer_kind=attitude.ARCS)
 
 
 def _local(steering: LocalSteering, flight: Flight) -> LoweredSteering:

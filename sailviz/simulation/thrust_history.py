@@ -50,9 +50,9 @@ class Schedule:
     law: np.ndarray | None = None  # the controller's row
 
 
-def schedule(scene: Scene, table: np.ndarray | None) -> Schedule:
-    """Everything in a scene that makes its thrust jump. table : of the steering, or None. SceneError for a wind file
-    that cannot be used."""
+def schedule(scene: Scene, table: np.ndarray | None, jumps: tuple[float, ...] = ()) -> Schedule:
+    """Everything in a scene that makes its thrust jump. table, or None, and jumps s : of the steering. SceneError for a
+    wind file that cannot be used."""
     duration = scene.propagation.duration
     intervals = scene.device.active
     edges = [edge for pair in intervals or [] for edge in pair]
@@ -63,7 +63,7 @@ def schedule(scene: Scene, table: np.ndarray | None) -> Schedule:
     if isinstance(law, (PressureControl, DistanceControl)):
         updates = law.interval * np.arange(int(np.ceil(duration / law.interval * (1 - 1e-12))))
     breaks = np.unique(
-        np.concatenate([[0.0], weather.times, updates, edges, [] if table is None or smooth else table[:, 0]])
+        np.concatenate([[0.0], weather.times, updates, edges, jumps, [] if table is None or smooth else table[:, 0]])
     )
     breaks = breaks[(breaks >= 0) & (breaks < duration)]
     now = np.searchsorted(weather.times, breaks, side="right") - 1

@@ -16,6 +16,7 @@ from sailviz.steering.optimal import analytic_pitch, optimal_pitch  # noqa: F401
 
 RADIAL, ORBITAL, MERIDIAN, TRANSVERSE, TANGENTIAL, INERTIAL, TABLE_ORBITAL, TABLE_MERIDIAN, USER = range(9)
 PRIMER, LOCAL, LYAPUNOV = range(9, 12)  # towards the most thrust along a primer: from a table, for an element, for all
+ARCS = 13  # a primer from a table, whose thrust is told arc by arc (of `primer.kind`; the steering is PRIMER)
 CALLED = 12  # a law of one's own, a C function called by its address, as are those three
 
 # name in a scene -> id; "radial" and "sun-facing" are one law under the words of two trades

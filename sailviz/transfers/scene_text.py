@@ -9,10 +9,11 @@ from collections.abc import Iterable
 import numpy as np
 
 from sailviz.constants import AU, DAY, MU_SUN
-from sailviz.design.minimum_time import costates, replay
+from sailviz.design.minimum_time import replay
 from sailviz.design.minimum_time.orbits import OrbitTransfer
 from sailviz.design.minimum_time.planar_transfer import Transfer
 from sailviz.design.minimum_time.planet_rendezvous import Rendezvous
+from sailviz.design.minimum_time.singular_arcs import fly
 from sailviz.design.minimum_time.state_costate import POSITION, SPEED_UNIT, TIME_UNIT, VELOCITY, canonical_sail
 from sailviz.elements import Elements, elements
 from sailviz.propulsion.devices import ELECTRIC_SAILS
@@ -21,6 +22,7 @@ from sailviz.transfers.search import Place, Solution
 from sailviz.words import nearest
 
 TABLE_ERROR = 1e-5  # rad of the attitudes of a steering table between its rows
+ARC_TABLE_ERROR = 3e-6  # of flights in arcs, and of the throttle on those that are singular
 AFTER_SWITCH = 1e-3  # s from the row before a switch to the row after it
 LEAST_TILT = np.radians(0.01)  # of an orbit whose node is worth checking
 
@@ -37,7 +39,7 @@ def solved(flight: Flight) -> replay.Solved:
         return replay.Solved(flight.position, flight.velocity, flight.costates, flight.time, device, a_c)
     if flight.start is None:
         raise ValueError("there is no flight to write down: it has no start")
-    return replay.from_planar(flight.start, flight.initial_radius, flight.time, device, a_c)
+    return replay.from_planar(flight.start, flight.initial_radius, flight.time, device, a_c, flight.arcs)
 
 
 def path_of(flight: Flight, samples: int = 1000) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -46,7 +48,8 @@ def path_of(flight: Flight, samples: int = 1000) -> tuple[np.ndarray, np.ndarray
     start = np.concatenate([it.position / AU, it.velocity / SPEED_UNIT, it.costates])
     span = it.time / TIME_UNIT
     sail = canonical_sail(it.device, it.characteristic_acceleration)
-    found = costates.propagate(start, span, sail, times=np.linspace(0.0, span, samples))
+    arcs = [(arc.kind, (arc.end - arc.start) / TIME_UNIT) for arc in it.arcs]
+    found = fly(start, span, sail, arcs, np.linspace(0.0, span, samples))
     return found.rows[:, POSITION] * AU, found.rows[:, VELOCITY] * SPEED_UNIT, found.switches * TIME_UNIT
 
 
@@ -92,7 +95,7 @@ def scene_of(
         numbers = flight.costates if circular else it.costates
         units = "mu = 1, distance of the start = 1" if circular else "mu = 1 au = 1"
         scaled = f"{flight.hamiltonian:.6g}" if isinstance(flight, Rendezvous) else "+1"
-        lines += ['kind = "optimal"', f"costates = {_list(numbers)}  # H = {scaled}, {units}"]
+        lines += ['kind = "optimal"', f"costates = {_list(numbers)}  # H = {scaled}, {units}", *_arcs(it)]
     else:
         lines += _steering_table(it)
     lines += ["", "[target]", *(f"{key} = {_value(value)}" for key, value in target.items())]
@@ -168,8 +171,15 @@ def _device(it: replay.Solved) -> list[str]:
     return ['kind = "electric-sail"', f'model = "{model}"', strength]
 
 
+def _arcs(it: replay.Solved) -> list[str]:
+    if not it.arcs:
+        return []
+    rows = [f'  {{ kind = "{arc.kind}", duration_d = {_number((arc.end - arc.start) / DAY)} }},' for arc in it.arcs]
+    return ["arcs = [", *rows, "]"]
+
+
 def _steering_table(it: replay.Solved) -> list[str]:
-    found = replay.steering_table(it, error=TABLE_ERROR)
+    found = replay.steering_table(it, error=ARC_TABLE_ERROR if it.arcs else TABLE_ERROR)
     time = np.round(found.time, 4)
     again = np.nonzero(np.diff(time) <= 0)[0] + 1  # the second row of a switch
     time[again] = time[again - 1] + AFTER_SWITCH
@@ -179,7 +189,7 @@ def _steering_table(it: replay.Solved) -> list[str]:
         "clock_deg": [f"{x:.6f}" for x in np.degrees(found.clock)],
     }
     if found.throttle.min() < 1:
-        columns["throttle"] = [f"{x:g}" for x in found.throttle]
+        columns["throttle"] = [f"{x:.8g}" for x in found.throttle]
     return ['kind = "table"', *(f"{name} = {_wrapped(values)}" for name, values in columns.items())]
 
 

@@ -16,7 +16,8 @@ import numpy.typing as npt
 
 from sailviz import frames
 from sailviz.constants import AU
-from sailviz.design.minimum_time.costates import Flight, propagate
+from sailviz.design.minimum_time.costates import Flight
+from sailviz.design.minimum_time.singular_arcs import Arc, fly, switching, throttle_of_arcs
 from sailviz.design.minimum_time.state_costate import (
     LAM_R,
     LAM_V,
@@ -30,13 +31,15 @@ from sailviz.propulsion.solar_sail import Film
 from sailviz.steering.optimal import optimal_pitch
 
 FEWEST, MOST = 200, 200_000  # rows of a grid that is halved until it is fine enough
+ARC_ERROR = 1e-11  # rad, of the primer of a flight in arcs, and so about of its throttle: its rows are few
 BESIDE = 1e-9  # of the flight, from a switch to where its two sides are read
 
 
 @dataclass(frozen=True)
 class Solved:
     """What a flight starts from: position m and velocity m/s (3,), costates (6,) in units of mu = 1 and one au, time s,
-    device, characteristic_acceleration m/s2. `OrbitTransfer` and `Rendezvous` have the same fields."""
+    device, characteristic_acceleration m/s2. `OrbitTransfer` and `Rendezvous` have the same fields, but no arcs, those
+    of an electric sail that uses partial voltage."""
 
     position: np.ndarray
     velocity: np.ndarray
@@ -44,6 +47,7 @@ class Solved:
     time: float
     device: Film | str
     characteristic_acceleration: float
+    arcs: tuple[Arc, ...] = ()
 
 
 class Replayable(Protocol):
@@ -64,20 +68,26 @@ class Replayable(Protocol):
 
 
 def from_planar(
-    start: npt.ArrayLike, radius: float, time: float, device: Film | str, characteristic_acceleration: float
+    start: npt.ArrayLike,
+    radius: float,
+    time: float,
+    device: Film | str,
+    characteristic_acceleration: float,
+    arcs: tuple[Arc, ...] = (),
 ) -> Solved:
     """A Solved from state and costates (12,) in units of mu = 1 and a radius in m, as of circle-to-circle flights."""
     a, start = radius / AU, np.asarray(start, dtype=float)
     position, velocity = start[POSITION] * radius, start[VELOCITY] * SPEED_UNIT / np.sqrt(a)
     lam = np.concatenate([start[LAM_R] * np.sqrt(a), start[LAM_V] * a**2])  # -d time / d (position, velocity)
-    return Solved(position, velocity, lam, float(time), device, float(characteristic_acceleration))
+    return Solved(position, velocity, lam, float(time), device, float(characteristic_acceleration), arcs)
 
 
 @dataclass(frozen=True)
 class PrimerHistory:
     """The primer in time, for Hermite's cubic: time (n,) s; primer (n, 3) in s per m/s, what a push of the velocity
     saves of the flight time, inertial; rate (n, 3) per s; error, largest angle in rad between cubic and primer,
-    measured between the rows. position m and velocity m/s (3,) at the start; switches (k,) s."""
+    measured between the rows. position m and velocity m/s (3,) at the start; switches (k,) s. throttle, of every
+    singular arc: time (m,) s and the throttle (m,) on it."""
 
     time: np.ndarray
     primer: np.ndarray
@@ -86,13 +96,15 @@ class PrimerHistory:
     position: np.ndarray
     velocity: np.ndarray
     switches: np.ndarray
+    throttle: tuple[tuple[np.ndarray, np.ndarray], ...] = ()
 
 
 @dataclass(frozen=True)
 class SteeringTable:
     """Attitudes in time, to be read linearly: time (n,) s, pitch and clock (n,) rad in the orbital frame, throttle
-    (n,) 1 or 0. Two rows at each of the switches (k,) s: before and after. error, largest angle in rad between the
-    normal read and the optimal one, midway between rows. position m and velocity m/s (3,) at the start."""
+    (n,) 1 or 0, between them on singular arcs. Two rows at each of the switches (k,) s: before and after. error,
+    largest angle in rad between the normal read and the optimal one, and largest error of the throttle read, midway
+    between rows. position m and velocity m/s (3,) at the start."""
 
     time: np.ndarray
     pitch: np.ndarray
@@ -104,43 +116,63 @@ class SteeringTable:
     switches: np.ndarray
 
 
+def _arcs_of(solved: Replayable) -> tuple[Arc, ...]:
+    return solved.arcs if isinstance(solved, Solved) else ()
+
+
 def _fly(solved: Replayable, times: npt.ArrayLike = ()) -> Flight:
     """The flight, with rows at times in s."""
     y = np.concatenate([np.divide(solved.position, AU), np.divide(solved.velocity, SPEED_UNIT), solved.costates])
     sail = canonical_sail(solved.device, solved.characteristic_acceleration)
     span = solved.time / TIME_UNIT
-    flight = propagate(y, span, sail, times=np.minimum(np.divide(times, TIME_UNIT), span))
+    arcs = [(arc.kind, (arc.end - arc.start) / TIME_UNIT) for arc in _arcs_of(solved)]
+    flight = fly(y, span, sail, arcs, np.minimum(np.divide(times, TIME_UNIT), span))
     if flight.reason:
         raise ValueError(f"these costates cannot be flown: {flight.reason} after {flight.time * TIME_UNIT:.6g} s")
     return flight
 
 
 def primer_history(solved: Replayable, *, error: float = 1e-10) -> PrimerHistory:
-    """The primer of a solved flight on an even grid, dense enough for Hermite's cubic to keep an error in rad.
+    """The primer of a solved flight on an even grid, dense enough for Hermite's cubic to keep an error in rad; of a
+    flight in arcs a grid for each of them, between which the primer has kinks of higher order.
 
     solved : an OrbitTransfer, a Rendezvous or a Solved.
     """
-    intervals = FEWEST
-    while True:
-        time = np.linspace(0.0, solved.time, 2 * intervals + 1)
-        flight = _fly(solved, time)
-        primer, rate = flight.rows[:, LAM_V], -flight.rows[:, LAM_R]
-        left, right = slice(0, -1, 2), slice(2, None, 2)
-        half = (time[2] - time[0]) / TIME_UNIT / 8
-        middle = 0.5 * (primer[left] + primer[right]) + half * (rate[left] - rate[right])
-        found = float(_angle(middle, primer[1::2]).max())
-        if found <= error or intervals >= MOST:
-            break
-        intervals *= 2
+    arcs = _arcs_of(solved)
+    bounds = [0.0, *(arc.end for arc in arcs[:-1]), solved.time]
+    pieces, throttle, worst = [], [], 0.0
+    if arcs:
+        error = min(error, ARC_ERROR)
+    for piece, (first, last) in enumerate(pairwise(bounds)):
+        intervals = max(2, int(FEWEST * (last - first) / solved.time))
+        while True:
+            time = np.linspace(first, last, 2 * intervals + 1)
+            flight = _fly(solved, time)
+            primer, rate = flight.rows[:, LAM_V], -flight.rows[:, LAM_R]
+            left, right = slice(0, -1, 2), slice(2, None, 2)
+            half = (time[2] - time[0]) / TIME_UNIT / 8
+            middle = 0.5 * (primer[left] + primer[right]) + half * (rate[left] - rate[right])
+            found = float(_angle(middle, primer[1::2]).max())
+            if found <= error or intervals >= MOST:
+                break
+            intervals *= 2
+        worst = max(worst, found)
+        begin = 2 if pieces else 0  # where two pieces meet is one row
+        pieces.append([time[begin::2], primer[begin::2], rate[begin::2]])
+        if arcs and arcs[piece].kind == "singular":
+            sail = canonical_sail(solved.device, solved.characteristic_acceleration)
+            throttle.append((time[::2], switching(flight.rows[::2], sail).throttle))
+    times, primers, rates = (np.concatenate(column) for column in zip(*pieces, strict=True))
     scale = TIME_UNIT / SPEED_UNIT
     return PrimerHistory(
-        time[::2],
-        primer[::2] * scale,
-        rate[::2] * scale / TIME_UNIT,
-        found,
+        times,
+        primers * scale,
+        rates * scale / TIME_UNIT,
+        worst,
         np.array(solved.position, dtype=float),
         np.array(solved.velocity, dtype=float),
         flight.switches * TIME_UNIT,
+        tuple(throttle),
     )
 
 
@@ -166,6 +198,7 @@ def steering_table(solved: Replayable, *, error: float = 1e-6) -> SteeringTable:
             read = _normal(0.5 * (pitch[:-1:2] + pitch[2::2]), 0.5 * (clock[:-1:2] + clock[2::2]))
             wrong = _angle(read, _normal(pitch[1::2], clock[1::2]))
             found = float(np.max(wrong, where=on[1::2] > 0, initial=0.0))  # without thrust no attitude is wrong
+            found = max(found, float(np.max(np.abs(0.5 * (on[:-1:2] + on[2::2]) - on[1::2]))))
             if found <= error or intervals >= MOST:
                 break
             intervals *= 2
@@ -177,20 +210,24 @@ def steering_table(solved: Replayable, *, error: float = 1e-6) -> SteeringTable:
 
 
 def _attitude(solved, time, before):
-    """Pitch and clock rad, and 1 or 0 for thrust, each (n,), continuous from a pair of pitch and clock before."""
+    """Pitch and clock rad, and the throttle, each (n,), continuous from a pair of pitch and clock before."""
     rows = _fly(solved, time).rows
     primer = frames.to_frame(frames.rtn(rows[:, POSITION], rows[:, VELOCITY]), rows[:, LAM_V])
     across = np.hypot(primer[:, 1], primer[:, 2])
     steered = optimal_pitch(np.arctan2(across, primer[:, 0]), solved.device)
     side = primer[:, 1:] / np.maximum(across, np.finfo(float).tiny)[:, None]
+    throttle = steered.on.astype(float)
+    if _arcs_of(solved):
+        sail = canonical_sail(solved.device, solved.characteristic_acceleration)
+        throttle = throttle_of_arcs(rows, time, _arcs_of(solved), sail)
     sign = np.cumprod(np.where(np.sum(side[1:] * side[:-1], axis=1) < 0, -1.0, 1.0))
-    sign = np.concatenate([[1.0], np.where(steered.on[1:], sign, 1.0)])
+    sign = np.concatenate([[1.0], np.where(throttle[1:] > 0, sign, 1.0)])
     if before is not None and side[0] @ [np.sin(before[1]), np.cos(before[1])] < 0:
         sign = -sign
     clock = np.unwrap(np.arctan2(sign * side[:, 0], sign * side[:, 1]))
     if before is not None:
         clock += 2 * np.pi * np.round((before[1] - clock[0]) / (2 * np.pi))
-    return sign * steered.pitch, clock, steered.on.astype(float)
+    return sign * steered.pitch, clock, throttle
 
 
 def _normal(pitch, clock):

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from math import pi
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
+from sailviz.constants import DAY
 from sailviz.scene.conflicts.answers import Faults, always, never, no_angles, no_sentences, nothing
 from sailviz.scene.conflicts.starts import STARTS
 from sailviz.scene.device import ElectricSail, PlasmaBrake
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
 S = TypeVar("S", bound=Section)
+SAME_END = 1e-6  # of a run: arcs that end so near its end last as long
 
 
 class SteeringFits(NamedTuple, Generic[S]):
@@ -79,6 +81,20 @@ def _smoothed(scene: Scene, steering: SmoothedSteering) -> Faults:
     return found
 
 
+def _arcs(scene: Scene, steering: OptimalSteering) -> Faults:
+    if steering.arcs is None:
+        return []
+    reckoned = steering.reckons_with
+    if not (isinstance(scene.device, ElectricSail) if reckoned is None else reckoned.startswith("electric-sail")):
+        words = "arcs are an electric sail's: a film is steered by its attitude alone and has no singular arc"
+        return [("steering.arcs", words)]
+    total, duration = sum(arc.duration for arc in steering.arcs), scene.propagation.duration
+    if not scene.phase and abs(total - duration) > SAME_END * duration:
+        words = f"the arcs last {total / DAY:.10g} d together, and the run {duration / DAY:.10g} d"
+        return [("steering.arcs", f"{words}: they have to last as long")]
+    return []
+
+
 def _tilted_brake(scene: Scene, device: PlasmaBrake) -> Faults:
     words = "how far the drag tilts the tether depends on the mass at its tip"
     return [("device.tip_mass", words)] if device.tip_mass is None else []
@@ -119,7 +135,7 @@ STEERINGS: dict[str, SteeringFits[Any]] = {  # the functions of each record take
         frame=lambda steering: steering.frame, pitch=lambda steering: steering.pitch, ensemble=_held_rows
     ),
     "optimal": SteeringFits[OptimalSteering](
-        primer=True, planar=lambda steering: len(steering.costates) == 3, ensemble=_alone
+        primer=True, planar=lambda steering: len(steering.costates) == 3, ensemble=_alone, transfer=_arcs
     ),
     "smoothed-transfer": SteeringFits[SmoothedSteering](transfer=_smoothed),
     "locally-optimal": SteeringFits[LocalSteering](primer=True, frame=_frame_of_goal, ensemble=_alone),

@@ -54,6 +54,14 @@ _MEAN = {
         (9.53667594, 0.05386179, 2.48599187, 49.95424423, 92.59887831, 113.66242448),
         (-0.00125060, -0.00050991, 0.00193609, 1222.49362201, -0.41897216, -0.28867794),
     ),
+    "Uranus": (
+        (19.18916464, 0.04725744, 0.77263783, 313.23810451, 170.95427630, 74.01692503),
+        (-0.00196176, -0.00004397, -0.00242939, 428.48202785, 0.40805281, 0.04240589),
+    ),
+    "Neptune": (
+        (30.06992276, 0.00859048, 1.77004347, -55.12002969, 44.96476227, 131.78422574),
+        (0.00026291, 0.00005105, 0.00035372, 218.45945325, -0.32241464, -0.00508664),
+    ),
 }
 PLANETS = tuple(_MEAN)
 
@@ -83,13 +91,14 @@ def planet_elements(name: str, seconds: ArrayLike) -> tuple[np.ndarray, ...]:
 
 
 def eccentric_anomaly(mean: np.ndarray, e: np.ndarray | float) -> np.ndarray:
-    """Eccentric anomaly (n,) rad, within half a turn of 0, of a mean anomaly (n,) rad.
+    """Eccentric anomaly (n,) rad, within half a turn of 0, of a mean anomaly (n,) rad on an ellipse.
 
-    Kepler's equation by Newton from Danby's start; planets need three or four iterations.
+    Kepler's equation by Newton from Danby's start, M + 0.85 e sign(sin M), beyond which its left side bends one way
+    only; planets need three or four iterations, Halley's comet eight.
     """
     mean = np.remainder(mean + np.pi, 2 * np.pi) - np.pi
     anomaly = mean + 0.85 * np.sign(np.sin(mean)) * e
-    for _ in range(10):
+    for _ in range(60):
         step = (anomaly - e * np.sin(anomaly) - mean) / (1 - e * np.cos(anomaly))
         anomaly = anomaly - step
         if np.abs(step).max() < 1e-14:
@@ -97,23 +106,28 @@ def eccentric_anomaly(mean: np.ndarray, e: np.ndarray | float) -> np.ndarray:
     return anomaly
 
 
+def true_anomaly(mean: np.ndarray, e: np.ndarray | float) -> np.ndarray:
+    """True anomaly (n,) rad, within half a turn of 0, of a mean anomaly (n,) rad on an ellipse."""
+    half = eccentric_anomaly(mean, e) / 2
+    found: np.ndarray = 2 * np.arctan2(np.sqrt(1 + e) * np.sin(half), np.sqrt(1 - e) * np.cos(half))
+    return found
+
+
 def planet_position(name: str, epoch: Epoch, time: ArrayLike, source: str = "mean-elements") -> np.ndarray:
     """Heliocentric position (n, 3) m, ecliptic of J2000, of a planet in PLANETS at times (n,) s after the epoch (UTC).
 
-    source : "mean-elements", off by up to 52, 32, 26, 100, 520 and 740 arcsec from Mercury to Saturn (measured
-    against DE421 over 1900-2050; Mars: 100,000 km, in 2026-2036 71,000 km); or "de421", good to kilometres, which
-    needs the extra `ephemeris` and times from 1899 to 2053. ModuleNotFoundError without the extra, ValueError outside
-    those years. Barycentres of planets with moons.
+    source : "mean-elements", off by up to 52, 32, 26, 100, 520, 740, 114 and 60 arcsec from Mercury to Neptune
+    (measured against DE421 over 1900-2050; Mars: 100,000 km, in 2026-2036 71,000 km); or "de421", good to kilometres,
+    which needs the extra `ephemeris` and times from 1899 to 2053. ModuleNotFoundError without the extra, ValueError
+    outside those years. Barycentres of planets with moons.
     """
     if source == "de421":
         return _de421(name, seconds_since_j2000(epoch) + np.asarray(time, dtype=float))
     a, e, i, node, argument, mean = planet_elements(name, seconds_since_j2000(epoch) + np.asarray(time, dtype=float))
-    half = eccentric_anomaly(mean, e) / 2
-    anomaly = 2 * np.arctan2(np.sqrt(1 + e) * np.sin(half), np.sqrt(1 - e) * np.cos(half))
-    return state(a, e, i, node, argument, anomaly, MU_SUN)[0]
+    return state(a, e, i, node, argument, true_anomaly(mean, e), MU_SUN)[0]
 
 
-_DE421_NUMBERS = {"Mercury": 1, "Venus": 2, "Earth": 3, "Mars": 4, "Jupiter": 5, "Saturn": 6}
+_DE421_NUMBERS = {"Mercury": 1, "Venus": 2, "Earth": 3, "Mars": 4, "Jupiter": 5, "Saturn": 6, "Uranus": 7, "Neptune": 8}
 TT_MINUS_UTC = 69.184  # s, since 2017 and until the next leap second: IERS Bulletin C
 
 

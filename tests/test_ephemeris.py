@@ -11,12 +11,19 @@ from sailviz.ephemeris import J2000, PLANETS, planet_elements, planet_orbit, pla
 YEARS = 365.25636 * DAY  # sidereal
 
 
-# Heliocentric ecliptic positions of J2000.0, au: JPL Horizons; the mean elements promise 40 arcsec here
+# Heliocentric ecliptic positions of J2000.0, au: JPL Horizons, DE421; the mean elements promise 40 arcsec here
+# to Mars, and are 0.011 au off Uranus and Neptune at most (measured over 1900-2050)
 @pytest.mark.parametrize(
-    ("name", "position"), [("Earth", (-0.17713, 0.96724, 0.0)), ("Mars", (1.39072, -0.01342, -0.03447))]
+    ("name", "position", "within"),
+    [
+        ("Earth", (-0.17713, 0.96724, 0.0), 3e-4),
+        ("Mars", (1.39072, -0.01342, -0.03447), 3e-4),
+        ("Uranus", (14.4319, -13.7343, -0.2381), 0.012),
+        ("Neptune", (16.8120, -24.9918, 0.1272), 0.012),
+    ],
 )
-def test_planets_stand_where_jpl_has_them_at_j2000(name, position):
-    assert planet_position(name, J2000, 0.0)[0] / AU == pytest.approx(position, abs=3e-4)
+def test_planets_stand_where_jpl_has_them_at_j2000(name, position, within):
+    assert planet_position(name, J2000, 0.0)[0] / AU == pytest.approx(position, abs=within)
 
 
 def test_earth_by_hand_from_its_mean_elements():
@@ -35,10 +42,11 @@ def test_earth_stays_between_its_apsides():
 
 @pytest.mark.parametrize("name", PLANETS)
 def test_mean_motion_and_semi_major_axis_obey_keplers_third_law(name):
-    """But for the planet's own mass, a thousandth of the Sun's at most, and what the others pull."""
+    """But for the planet's own mass, a thousandth of the Sun's at most, and what the others pull; the perihelion of
+    nearly circular Neptune was fitted with a motion of its own, 0.3 deg a century of 218."""
     a, *_, mean = planet_elements(name, np.array([0.0, YEAR]))
     motion = (mean[1] - mean[0]) / YEAR
-    assert motion**2 * a[0] ** 3 == pytest.approx(MU_SUN, rel=2e-3)
+    assert motion**2 * a[0] ** 3 == pytest.approx(MU_SUN, rel=5e-3 if name == "Neptune" else 2e-3)
 
 
 def test_earth_returns_after_a_sidereal_year():

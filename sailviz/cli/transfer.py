@@ -71,8 +71,8 @@ def transfer(
 ) -> None:
     """Find the fastest flight of a sail from one orbit to another, and how it must be steered.
 
-    FROM and TO are planets, mercury to saturn, or ceres; by default their orbits are circles in one plane. Exit code 1
-    where no flight was found; the nearest one is then told.
+    FROM and TO are planets, mercury to neptune, or small bodies such as ceres, apophis or kamooalewa; by default their
+    orbits are circles in one plane. Exit code 1 where no flight was found; the nearest one is then told.
     """
     sails = sails or ("ideal",)
     asked = Question.taken(options)

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from sailviz.design.minimum_time import Transfer
+    from sailviz.design.minimum_time.planet_rendezvous import Window
     from sailviz.transfers import Solution
 
 MOST_OF = 0.5  # of a flight at partial voltage: from there on a stronger sail is hardly faster
@@ -29,7 +30,7 @@ def words(found: Solution) -> Iterator[str]:
     ways = {
         "circles": "between circles in one plane",
         "orbits": "between orbits in space, both anomalies free",
-        "rendezvous": "to meet the planet where it is",
+        "rendezvous": f"to meet {found.target.name} where it is",
     }
     yield f"{found.origin.name} to {found.target.name}, {ways[found.kind]}"
     yield f"{craft}, {flight.characteristic_acceleration * 1e3:g} mm/s² at 1 au"
@@ -57,7 +58,10 @@ def words(found: Solution) -> Iterator[str]:
     for name, value in rows:
         yield f"  {name:<19}{value}"
     yield "  " + flight.claim[0].upper() + flight.claim[1:] + ("" if flight.claim.endswith(".") else ".")
+    for note in found.notes:
+        yield f"  Mind: {note}."
     if isinstance(flight, Rendezvous) and flight.window is not None:
+        yield from _best_dates(flight.window, flight.slope)
         yield "  Leaving on       takes, days"
         for day, time in zip(flight.window.departures, flight.window.times, strict=True):
             took = f"{time / DAY:9.3f}" if np.isfinite(time) else "none found"
@@ -79,6 +83,21 @@ def _partial_voltage(flight: Transfer) -> list[tuple[str, str]]:
     if share > MOST_OF * flight.time:
         said.append(("", "more thrust would gain little: the sail cannot brake, since its thrust points outwards"))
     return said
+
+
+def _best_dates(window: Window, slope: float) -> Iterator[str]:
+    """The local best dates of a window, and what its edge costs."""
+    import numpy as np
+
+    if window.edge:
+        way = "earlier" if window.edge == "first" else "later"
+        yield f"  It is the {window.edge} day of the window: leaving {way} wins {abs(slope):.2f} d of each day."
+    others = [
+        f"{np.datetime_as_string(day, 'D')} {time / DAY:.2f} d"
+        for day, time in zip(window.best_departures, window.best_times, strict=True)
+    ][1:]
+    if others:
+        yield f"  Best nearby only: {', '.join(others)}."
 
 
 def _unit(found: Solution) -> float:
@@ -117,6 +136,7 @@ def summary(found: Solution) -> dict[str, Any]:
     }
     if isinstance(flight, Rendezvous):
         values |= {"departure": str(flight.departure), "arrival": str(flight.arrival)}
+        values |= {"slope_d_per_d": _known(flight.slope), "mind": list(found.notes)}
     return values
 
 

@@ -19,7 +19,12 @@ if TYPE_CHECKING:
 
 _WHITHER = (
     click.option("--orbits", is_flag=True, help="In space, between the planets' elliptic orbits, both anomalies free."),
-    click.option("--date", metavar="DATE", help="Meet the planet itself, leaving on this date, e.g. 2030-01-01."),
+    click.option("--date", metavar="DATE", help="Meet the body itself, leaving on this date, e.g. 2030-01-01."),
+    click.option(
+        "--body-file",
+        metavar="FILE",
+        help="TO is an asteroid or a comet in this file of JPL's Small-Body Database or the Minor Planet Center.",
+    ),
     click.option(
         "--window",
         type=Number(0, 36525, "days", above=True),
@@ -56,6 +61,7 @@ class Question:
 
     orbits: bool
     date: str | None
+    body_file: str | None
     window: float | None
     dates: int
     radius_au: float | None
@@ -74,14 +80,15 @@ class Question:
             raise ValueError("\n".join(faults))
 
     def _about_the_aim(self, target: str | None) -> Iterator[str]:
-        if (target is None) == (self.radius_au is None):
-            yield "Say where to: a planet, or a circle by --radius-au."
+        named = target is not None or self.body_file is not None
+        if named == (self.radius_au is not None):
+            yield "Say where to: a planet, a small body, or a circle by --radius-au."
         if self.inclination_deg is not None and self.radius_au is None:
             yield "--inclination-deg is that of a circle: give --radius-au with it."
 
     def _about_the_date(self) -> Iterator[str]:
         if self.date is not None and (self.orbits or self.radius_au is not None):
-            yield "--date meets a planet where it is: neither --orbits nor --radius-au go with it."
+            yield "--date meets a body where it is: neither --orbits nor --radius-au go with it."
         if self.window is not None and self.date is None:
             yield "--window counts its days from a --date."
 
@@ -93,8 +100,10 @@ class Question:
 
     def aim(self, target: str | None) -> Place:
         """The place aimed at."""
-        from sailviz.transfers import circle, place
+        from sailviz.transfers import circle, place, place_of_file
 
+        if self.body_file is not None:
+            return place_of_file(self.body_file, target)
         if target is not None:
             return place(target)
         assert self.radius_au is not None, "check has seen that there is one of the two"

@@ -32,7 +32,8 @@ MPC_COMET = {
 
 
 class SmallBody(NamedTuple):
-    """An orbit by its perihelion. perihelion distance m; angles rad; passage : JD TDB of the perihelion."""
+    """An orbit by its perihelion. perihelion distance m; angles rad; passage : JD TDB of the perihelion; epoch : JD TDB
+    of the elements, where it is told."""
 
     name: str
     perihelion: float
@@ -41,6 +42,7 @@ class SmallBody(NamedTuple):
     node: float
     argument: float
     passage: float
+    epoch: float | None = None
 
     def at_perihelion(self) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
         """Position, m, and velocity, m/s, ecliptic of J2000, at the passage."""
@@ -63,7 +65,7 @@ def by_anomaly(
     rate = math.sqrt(MU_SUN / abs(axis) ** 3)
     if e < 1.0:
         anomaly = math.remainder(anomaly, 2 * math.pi)
-    return SmallBody(name, axis * (1.0 - e), e, inclination, node, argument, day - anomaly / rate / DAY)
+    return SmallBody(name, axis * (1.0 - e), e, inclination, node, argument, day - anomaly / rate / DAY, day)
 
 
 def read_small_body(path: str | Path, name: str | None = None) -> SmallBody:
@@ -113,7 +115,7 @@ def _of_database(text: str, name: str | None) -> SmallBody:
     e, inclination, node, argument = needed("e"), *(math.radians(needed(key)) for key in ("i", "om", "w"))
     anomaly, axis, day = number("ma"), number("a"), _number(str(orbit.get("epoch")), "the epoch")
     if e >= NEARLY_PARABOLIC or anomaly is None or axis is None:
-        return _checked(SmallBody(full, needed("q") * AU, e, inclination, node, argument, needed("tp")))
+        return _checked(SmallBody(full, needed("q") * AU, e, inclination, node, argument, needed("tp"), day))
     return _checked(by_anomaly(full, axis * AU, e, inclination, node, argument, math.radians(anomaly), day))
 
 

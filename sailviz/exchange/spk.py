@@ -26,7 +26,8 @@ DIRECTORY = 100  # epochs between those that the directory repeats
 CRAFT = -910001  # NAIF id of a craft of no agency
 BODIES = {  # NAIF id -> the centres that flights here have
     10: "SUN", 1: "MERCURY", 2: "VENUS", 399: "EARTH", 301: "MOON", 4: "MARS", 5: "JUPITER", 6: "SATURN",
-    199: "MERCURY", 299: "VENUS", 499: "MARS", 599: "JUPITER", 699: "SATURN", 3: "EARTH MOON BARYCENTER", 0: "SSB",
+    7: "URANUS", 8: "NEPTUNE", 199: "MERCURY", 299: "VENUS", 499: "MARS", 599: "JUPITER", 699: "SATURN", 799: "URANUS",
+    899: "NEPTUNE", 3: "EARTH MOON BARYCENTER", 0: "SSB",
 }  # fmt: skip
 LARGEST = 1e28  # m, m/s: beyond everything
 WITH_ROWS = (5, 8, 9, 13)  # types whose arrays hold rows of states

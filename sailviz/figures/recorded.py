@@ -55,7 +55,7 @@ if TYPE_CHECKING:
 SMOOTH = 5  # degrees between rows above which an orbit from the pole is no smooth line
 MOST_POINTS = 4000  # of a line over another quantity
 NEAR = 1.25  # times the largest distance from the Sun: rings of planets within are drawn
-RINGS = ("Mercury", "Venus", "Earth", "Mars", "Jupiter", "Saturn")
+RINGS = ("Mercury", "Venus", "Earth", "Mars", "Jupiter", "Saturn", "Uranus", "Neptune")
 
 
 def draw_recording(

@@ -40,8 +40,10 @@ CENTRES = {  # what flies round what: Cosmographia's word, SPICE's for the centr
     "Mars": ("Mars", "MARS BARYCENTER"),
     "Jupiter": ("Jupiter", "JUPITER BARYCENTER"),
     "Saturn": ("Saturn", "SATURN BARYCENTER"),
+    "Uranus": ("Uranus", "URANUS BARYCENTER"),
+    "Neptune": ("Neptune", "NEPTUNE BARYCENTER"),
 }
-TAKEN = (*CENTRES, "Uranus", "Neptune", "Pluto", "Ceres", "Vesta", "Phobos", "Deimos", "Io", "Europa", "Ganymede",
+TAKEN = (*CENTRES, "Pluto", "Ceres", "Vesta", "Phobos", "Deimos", "Io", "Europa", "Ganymede",
          "Callisto", "Titan", "Enceladus", "Rhea", "Dione", "Tethys", "Mimas", "Iapetus", "Triton", "Charon",
          "Milky Way")  # fmt: skip
 MARK = "A flight by sailviz, for Cosmographia"

@@ -25,6 +25,7 @@ from sailviz.run.devices import LABELS
 from sailviz.run.given_arrays import Columns, Given, GivenMesh, Span, Turned, checked
 from sailviz.version import __version__
 
+OUTERMOST = ("Uranus", "Neptune")  # shown beside flights that come near only
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
@@ -141,7 +142,8 @@ def trajectory(
         play_duration=None if play_duration is None else float(play_duration),
         gaps=given.gaps,
     )
-    bodies = _bodies(given.body, given.epoch, given.time, planets)
+    near = {reference.name for reference in setting.references}
+    bodies = _bodies(given.body, given.epoch, given.time, planets, near)
     if given.light is not None:
         bodies["Sun" if star is None else "light"] = given.light
         if star is not None:
@@ -221,13 +223,17 @@ def _planet_orbits(position: np.ndarray, epoch: np.datetime64 | None) -> tuple[R
     )
 
 
-def _bodies(body: Body, epoch: np.datetime64 | None, time: np.ndarray, planets: bool) -> dict[str, np.ndarray]:
+def _bodies(
+    body: Body, epoch: np.datetime64 | None, time: np.ndarray, planets: bool, near: set[str]
+) -> dict[str, np.ndarray]:
+    """Places (n, 3) m: of the planets to Saturn, and of those beyond that are near."""
+    shown = near | {name for name in ephemeris.PLANETS if name not in OUTERMOST}
     if epoch is None:
         return {}
     if body.name == "Earth":
         return {"Sun": ephemeris.sun_position(epoch, time)}
     if body.name == "Sun" and planets:
-        return {name: ephemeris.planet_position(name, epoch, time) for name in ephemeris.PLANETS}
+        return {name: ephemeris.planet_position(name, epoch, time) for name in ephemeris.PLANETS if name in shown}
     return {}
 
 

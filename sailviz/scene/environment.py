@@ -180,7 +180,9 @@ class MagneticSphere(Section):
     radius: Annotated[Length, POSITIVE]
 
 
-SkyWord = Literal["sun", "mercury", "venus", "earth", "moon", "mars", "jupiter", "saturn", "earth-moon"]
+SkyWord = Literal[
+    "sun", "mercury", "venus", "earth", "moon", "mars", "jupiter", "saturn", "uranus", "neptune", "earth-moon"
+]
 
 
 class ThirdBody(Section):

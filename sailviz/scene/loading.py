@@ -52,6 +52,7 @@ UNSAID = {  # by table, keys without which scenes were complete before they were
     "device.shape": ("air",),
     "expect": ("device",),
     "steering": ("in_shadow", "minimum_perigee", "margin", "arcs"),
+    "target": ("mean_anomaly", "elements_date"),
 }
 
 

@@ -5,6 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
+from sailviz.scene.body import PLANET
 from sailviz.scene.known_starts import KnownStarts
 from sailviz.scene.values import (
     POSITIVE,
@@ -118,7 +119,7 @@ class PlanetFollowingStart(DesignedStart):
     perihelion on the x axis."""
 
     kind: Literal["planet-following"]
-    planet: Literal["mercury", "venus", "earth", "mars", "jupiter"] | None = None
+    planet: PLANET | None = None
     semi_major_axis: Annotated[Length, POSITIVE] | None = None
     eccentricity: Annotated[float, Field(ge=0, lt=1)] | None = None
     elevation: Annotated[Angle, QUARTER_TURN]

@@ -29,6 +29,7 @@ from sailviz.simulation.plan import Plan
 from sailviz.simulation.sky import SceneSky, body_places
 from sailviz.simulation.start import departure
 from sailviz.simulation.steering import steering_of
+from sailviz.simulation.targets import moving_target
 
 MOST_STEPS_AHEAD = 300_000  # of the coarse run that tells which planets come into view
 SHELL_ANGLES, SHELL_STEP = 120, 25e3  # round the orbit; m between altitudes
@@ -201,6 +202,10 @@ def _farthest(p: Plan) -> float:
 
 def bodies(p: Plan, planets, time) -> dict[str, np.ndarray]:
     """Positions (n, 3) m of what is drawn beside the craft; nothing without an epoch."""
+    return _known_bodies(p, planets, time) | moving_target(p.scene, p.body, time)
+
+
+def _known_bodies(p: Plan, planets, time) -> dict[str, np.ndarray]:
     if drawn := drawn_bodies(p.scene):
         return {body.name: body.position(time) for body in drawn}
     if p.sky is not None and p.body.name != "Sun":

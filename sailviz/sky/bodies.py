@@ -28,6 +28,8 @@ BODIES = {
     "mars": SkyBody("Mars", 42_828.375_816e9, 3_396.19e3, 4),
     "jupiter": SkyBody("Jupiter", 126_712_764.1e9, 71_492e3, 5),
     "saturn": SkyBody("Saturn", 37_940_584.841_8e9, 60_268e3, 6),
+    "uranus": SkyBody("Uranus", 5_794_556.4e9, 25_559e3, 7),
+    "neptune": SkyBody("Neptune", 6_836_527.100_58e9, 24_764e3, 8),
     "earth-moon": SkyBody("Earth and Moon", 403_503.235_6e9, 0.0, 3),
 }
 MOON_SHARE = BODIES["moon"].mu / (BODIES["earth"].mu + BODIES["moon"].mu)  # of the way from the Earth to the barycentre

@@ -17,7 +17,7 @@ from sailviz.constants import DAY
 from sailviz.sky.places import Sky
 
 Array = np.ndarray
-SLOW = {"jupiter", "saturn"}
+SLOW = {"jupiter", "saturn", "uranus", "neptune"}
 
 
 class Table(NamedTuple):

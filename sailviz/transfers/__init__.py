@@ -5,25 +5,27 @@ from typing import TYPE_CHECKING
 from sailviz.lazy import lazily
 
 if TYPE_CHECKING:
+    from sailviz.transfers.places import Place as Place
+    from sailviz.transfers.places import circle as circle
+    from sailviz.transfers.places import place as place
+    from sailviz.transfers.places import place_of_file as place_of_file
     from sailviz.transfers.scene_text import device_words as device_words
     from sailviz.transfers.scene_text import path_of as path_of
     from sailviz.transfers.scene_text import scene_of as scene_of
     from sailviz.transfers.search import FlightTimes as FlightTimes
-    from sailviz.transfers.search import Place as Place
     from sailviz.transfers.search import Solution as Solution
-    from sailviz.transfers.search import circle as circle
     from sailviz.transfers.search import find as find
     from sailviz.transfers.search import flight_times as flight_times
-    from sailviz.transfers.search import place as place
 
 _HOMES = {
-    "Place": "search",
+    "Place": "places",
     "Solution": "search",
     "FlightTimes": "search",
     "find": "search",
     "flight_times": "search",
-    "place": "search",
-    "circle": "search",
+    "place": "places",
+    "place_of_file": "places",
+    "circle": "places",
     "scene_of": "scene_text",
     "path_of": "scene_text",
     "device_words": "scene_text",

@@ -18,7 +18,8 @@ from sailviz.design.minimum_time.state_costate import POSITION, SPEED_UNIT, TIME
 from sailviz.elements import Elements, elements
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film
-from sailviz.transfers.search import Place, Solution
+from sailviz.transfers.places import Place
+from sailviz.transfers.search import Solution
 from sailviz.words import nearest
 
 TABLE_ERROR = 1e-5  # rad of the attitudes of a steering table between its rows
@@ -77,7 +78,7 @@ def scene_of(
     if target is None:
         target = whole.target.table if whole else Place("reached", _plain(reached)).table | {"name": "orbit reached"}
     if isinstance(flight, Rendezvous) and whole:
-        target = {"name": f"orbit of {whole.target.name}", "planet": whole.target.name.lower()}
+        target = whole.target.moving_table
     craft = device_words(it.device)
     ways = f"from {whole.origin.name} to {whole.target.name}" if whole else "from orbit to orbit"
     lines = [

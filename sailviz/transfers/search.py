@@ -15,27 +15,16 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from sailviz import ephemeris
-from sailviz.constants import AU
 from sailviz.design.minimum_time.circles import circle_to_circle
 from sailviz.design.minimum_time.orbits import STARTS, OrbitTransfer, orbit_to_orbit
 from sailviz.design.minimum_time.planar_transfer import Transfer
 from sailviz.design.minimum_time.planet_rendezvous import DATES, Date, Rendezvous, rendezvous
-from sailviz.elements import Elements
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film
-from sailviz.words import length, nearest
+from sailviz.transfers.places import Place, circle, names, place, trusted
+from sailviz.words import nearest
 
-# Osculating elements of 2020-01-01 (TDB), ecliptic of J2000: JPL Horizons, solution JPL#48
-CERES = Elements(
-    semi_major_axis=2.769289292 * AU,
-    eccentricity=0.07687465,
-    inclination=np.radians(10.59127768),
-    raan=np.radians(80.30119019),
-    argument=np.radians(73.80896809),
-    true_anomaly=0.0,
-)
-PLACES = (*(name.lower() for name in ephemeris.PLANETS), "ceres")
+PLACES = names()
 SAILS = (*FILMS, *ELECTRIC_SAILS)
 SAME_CIRCLE = 1e-4  # relative difference of two radii
 
@@ -43,62 +32,16 @@ Progress = Callable[[float, str], None]
 
 
 @dataclass(frozen=True)
-class Place:
-    """Where a transfer begins or ends: words, an orbit about the Sun, and whether it is a circle by wish."""
-
-    name: str
-    orbit: Elements
-    circle: bool = False
-
-    @property
-    def radius(self) -> float:
-        """Mean distance from the Sun, m."""
-        return float(self.orbit.semi_major_axis)
-
-    @property
-    def table(self) -> dict[str, str | float]:
-        """The orbit as a scene's [target]."""
-        e = self.orbit
-        found: dict[str, str | float] = {
-            "name": f"orbit of {self.name}" if self.name[0].isalpha() else f"circle of {self.name}"
-        }
-        if e.eccentricity == 0:
-            found["radius_au"] = self.radius / AU
-        else:
-            found |= {"semi_major_axis_au": self.radius / AU, "eccentricity": float(e.eccentricity)}
-        if e.inclination:
-            found |= {"inclination_deg": float(np.degrees(e.inclination)), "raan_deg": float(np.degrees(e.raan))}
-        if e.eccentricity != 0:
-            found["argument_deg"] = float(np.degrees(e.argument))
-        return found
-
-
-@dataclass(frozen=True)
 class Solution:
     """A transfer found, or the nearest: kind "circles", "orbits" or "rendezvous", where from and where to, and the
-    flight with its time, costates, residual and claim."""
+    flight with its time, costates, residual and claim; notes : sentences on how far the bodies' elements can be
+    trusted."""
 
     kind: str
     origin: Place
     target: Place
     flight: Transfer | OrbitTransfer | Rendezvous
-
-
-def place(name: str) -> Place:
-    """A planet or Ceres on its orbit: mean elements of J2000; Ceres' of 2020. ValueError with the nearest name."""
-    key = str(name).lower()
-    if key not in PLACES:
-        raise ValueError(f'there is no place called "{name}". {nearest(key, PLACES)}')
-    return Place(key.capitalize(), CERES if key == "ceres" else ephemeris.planet_ellipse(key.capitalize()))
-
-
-def circle(radius: float, inclination: float = 0.0, name: str = "") -> Place:
-    """A circle about the Sun: radius m, inclination rad to the ecliptic."""
-    if not (np.isfinite(radius) and radius > 0):
-        raise ValueError(f"a radius must be a positive number, got {radius!r}")
-    if not 0 <= inclination <= np.pi:
-        raise ValueError(f"an inclination lies between 0 and 180 deg, got {np.degrees(inclination):g} deg")
-    return Place(name or length(radius), Elements(float(radius), 0.0, float(inclination), 0.0, 0.0, 0.0), True)
+    notes: tuple[str, ...] = ()
 
 
 def find(
@@ -126,7 +69,7 @@ def find(
         raise ValueError(f'there is no sail called "{device}". {nearest(device, SAILS)}')
     a_c = characteristic_acceleration
     if departure is not None:
-        return _between_planets(begin, end, device, a_c, departure, dates, progress)
+        return _between_bodies(begin, end, device, a_c, departure, dates, progress)
     if orbits or (end.circle and end.orbit.inclination):
         if not orbits:
             begin = circle(begin.radius, name=begin.name)
@@ -139,7 +82,7 @@ def find(
     return Solution("circles", begin, end, circle_to_circle(begin.radius, end.radius, device, a_c, progress=progress))
 
 
-def _between_planets(
+def _between_bodies(
     origin: Place,
     target: Place,
     device: Film | str,
@@ -148,16 +91,19 @@ def _between_planets(
     dates: int | None,
     progress: Progress | None,
 ) -> Solution:
-    for end in (origin, target):
-        if end.circle or end.name not in ephemeris.PLANETS:
-            raise ValueError(f"a date needs planets whose places are known, and {end.name} is none of them")
+    if origin.body is None or target.body is None:
+        circle = origin if origin.body is None else target
+        raise ValueError(f"a date needs bodies whose places are known, and {circle.name} is none of them")
     try:
+        first = departure if isinstance(departure, str | np.datetime64) else departure[0]
+        for end in (origin, target):
+            trusted(end, np.datetime64(first).astype("datetime64[ns]"))
         found = rendezvous(
-            target.name,
+            target.body,
             departure,
             device,
             characteristic_acceleration,
-            origin=origin.name,
+            origin=origin.body,
             dates=DATES if dates is None else dates,
             progress=progress,
         )
@@ -165,7 +111,13 @@ def _between_planets(
         if "datetime" in str(error).lower():
             raise ValueError(f"{departure!r} is no date: write 2030-01-01") from None
         raise
-    return Solution("rendezvous", origin, target, found)
+    notes = [
+        note
+        for end, date in ((origin, found.departure), (target, found.arrival))
+        if found.feasible
+        for note in trusted(end, date)
+    ]
+    return Solution("rendezvous", origin, target, found, tuple(notes))
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ def test_a_place_is_the_planets_ellipse_and_a_circle_is_round():
         (lambda: transfers.find("earth", "mars", "idael"), 'Did you mean "ideal"?'),
         (lambda: transfers.find("earth", "earth"), "nothing to fly"),
         (lambda: transfers.find("earth", "mars", departure="20x0"), "is no date"),
-        (lambda: transfers.find("earth", "ceres", departure="2030-01-01"), "Ceres is none of them"),
+        (lambda: transfers.find("earth", transfers.circle(AU), departure="2030-01-01"), "1 au is none of them"),
     ],
 )
 def test_what_cannot_be_asked_is_refused_in_words(ask, answer):

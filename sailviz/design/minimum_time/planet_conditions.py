@@ -1,24 +1,31 @@
-"""What a fastest flight from a planet to another must satisfy, both where they are at their dates.
+"""What a fastest flight from a body to another must satisfy, planets or small ones, both where they are at their dates.
 
-Necessary conditions (re-derived): costates as in `state_costate`; at arrival position and velocity are the planet's,
+Necessary conditions (re-derived): costates as in `state_costate`; at arrival position and velocity are the target's,
 seven equations with |lam| = 1 for six costates and the flight time. The craft departs with the origin's own velocity
-and the planets' pull is neglected.
+and the bodies' pull is neglected. Where the date is free, one more: with f the craft's motion and g a body's,
 
-Search: the fastest flight to the planet's orbit, wherever the planet, from the place of the date; then the planet is
+    lam . (f - g of the origin) at departure = lam . (f - g of the target) at arrival,
+
+and elsewhere d time / d date = left side / right side - 1 (checked against differences). The right side is above zero
+on a fastest flight, below on a slowest.
+
+Search: the fastest flight to the target's orbit, wherever the target, from the place of the date; then the target is
 moved along its orbit, both ways, from where that flight arrives to where it is.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from sailviz import ephemeris
-from sailviz.constants import AU, MU_SUN
+from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.design.minimum_time import costates
+from sailviz.design.minimum_time.effort import Effort
 from sailviz.design.minimum_time.kepler_orbit import KeplerOrbit
+from sailviz.design.minimum_time.moving_bodies import SPREAD, MovingBody
 from sailviz.design.minimum_time.orbit_conditions import OrbitProblem, PlanarGuess
 from sailviz.design.minimum_time.orbits import target_radius
 from sailviz.design.minimum_time.state_costate import (
@@ -45,48 +52,47 @@ from sailviz.design.minimum_time.unknowns import (
 from sailviz.elements import elements
 
 SOLVED = 1e-9  # largest miss of a solution, au and 29.78 km/s
-SMALLEST_SHIFT = 0.01  # of the way that the planet is moved
-SPREAD = 3000.0  # s between positions that are differenced: rounding 1e-12, neglected terms 1e-14 of the speed
+STRAYS = 0.02  # of the flight time, from what the slope makes of it: more is another family
+SHORTEST_STEP = 2 * DAY  # s, of the departure of a flight that is handed on
+NEARBY = 15  # steps of a search that begins next to its solution
+SMALLEST_SHIFT = 0.01  # of the way that the target is moved
 
 
-def planet_state(
-    name: str, epoch: np.datetime64, time: npt.ArrayLike, source: str = "mean-elements"
-) -> tuple[np.ndarray, np.ndarray]:
-    """Heliocentric position m and velocity m/s, each (n, 3), ecliptic of J2000, at times (n,) s after the epoch.
+class Ends(NamedTuple):
+    """lam . (motion of the craft - motion of the body) at departure and at arrival."""
 
-    The velocity is the difference quotient of fourth order of `ephemeris.planet_position`, so that both belong
-    together.
-    """
-    time = np.atleast_1d(np.asarray(time, dtype=float))
-    far_before, before, here, after, far_after = (
-        ephemeris.planet_position(name, epoch, time + k * SPREAD, source) for k in (-2, -1, 0, 1, 2)
-    )
-    return here, (far_before - 8 * before + 8 * after - far_after) / (12 * SPREAD)
+    departure: float
+    arrival: float
+
+    @property
+    def slope(self) -> float:
+        """d time / d date, both in the same unit: above zero where leaving earlier is faster."""
+        return self.departure / self.arrival - 1.0
 
 
 @dataclass(frozen=True)
 class Meeting:
-    """Fastest flight of a sail from a planet to another; the departure of its Unknowns is in s after the epoch."""
+    """Fastest flight of a sail from a body to another; the departure of its Unknowns is in s after the epoch."""
 
-    origin: str
-    target: str
+    origin: MovingBody
+    target: MovingBody
     epoch: np.datetime64
     sail: Sail
-    source: str
+    effort: Effort = field(default_factory=Effort, compare=False)
 
     @property
     def smoothing(self) -> float:
         """With which an E-sail's switch is rounded off on the way."""
         return SMOOTHING if self.sail.rounds_off else 0.0
 
-    def state(self, name: str, time: npt.ArrayLike) -> np.ndarray:
-        """(n, 6) of a planet in units of au and mu = 1 at times in s after the epoch."""
-        r, v = planet_state(name, self.epoch, time, self.source)
+    def state(self, body: MovingBody, time: npt.ArrayLike) -> np.ndarray:
+        """(n, 6) of a body in units of au and mu = 1 at times in s after the epoch."""
+        r, v = body.state(self.epoch, time)
         return np.hstack([r / AU, v / SPEED_UNIT])
 
-    def orbit(self, name: str, time: float) -> KeplerOrbit:
-        """The orbit that osculates a planet's motion: it passes through its place at a time in s after the epoch."""
-        (y,) = self.state(name, time)
+    def orbit(self, body: MovingBody, time: float) -> KeplerOrbit:
+        """The orbit that osculates a body's motion: it passes through its place at a time in s after the epoch."""
+        (y,) = self.state(body, time)
         return KeplerOrbit.from_elements(elements(y[POSITION] * AU, y[VELOCITY] * SPEED_UNIT, MU_SUN))
 
     def start(self, unknowns: Unknowns) -> np.ndarray:
@@ -95,9 +101,15 @@ class Meeting:
         return np.concatenate([state, unknowns.costates])
 
     def search(
-        self, unknowns: Unknowns, smoothing: float = 0.0, tolerance: float = LOOSE, shift: float = 0.0
+        self,
+        unknowns: Unknowns,
+        smoothing: float = 0.0,
+        tolerance: float = LOOSE,
+        shift: float = 0.0,
+        most: int | None = None,
     ) -> tuple[Unknowns, float]:
-        """The solution near some unknowns, the planet ahead by a shift in s, and its residual."""
+        """The solution near some unknowns, the target ahead by a shift in s, and its residual, in so many steps at
+        most."""
         start = self.start(unknowns)[STATE]
 
         def residuals(batch: np.ndarray) -> np.ndarray:
@@ -107,7 +119,24 @@ class Meeting:
             there = self.state(self.target, unknowns.departure + shift + spans * TIME_UNIT)
             return np.hstack([ends[:, STATE] - there, off_unit_length(begin)])
 
-        return solved(residuals, unknowns, tolerance)
+        return solved(self.effort.watched(residuals), unknowns, tolerance, most)
+
+    def motion(self, body: MovingBody, time: float) -> np.ndarray:
+        """(6,) velocity and acceleration of a body in units of au and mu = 1 at a time in s after the epoch; of a
+        planet as its mean elements move it, which is not quite Kepler's motion."""
+        y = self.state(body, time + SPREAD * np.arange(-2.0, 3.0))
+        v = y[:, VELOCITY]
+        return np.concatenate([v[2], (v[0] - 8 * v[1] + 8 * v[3] - v[4]) / (12 * SPREAD / TIME_UNIT)])
+
+    def ends(self, unknowns: Unknowns, tolerance: float = TIGHT) -> Ends:
+        """Both sides of the condition for a free date, lam as in the unknowns."""
+        start = self.start(unknowns)
+        flight = costates.propagate(start, unknowns.span, self.sail, tolerance=tolerance)
+        arrival = unknowns.departure + unknowns.span * TIME_UNIT
+        return Ends(
+            flight.hamiltonian - float(self.motion(self.origin, unknowns.departure) @ start[COSTATES]),
+            flight.hamiltonian - float(self.motion(self.target, arrival) @ flight.end[COSTATES]),
+        )
 
     def sharpen(self, unknowns: Unknowns) -> Unknowns | None:
         """The solution of the true sail to rounding, or None."""
@@ -117,7 +146,7 @@ class Meeting:
             if residual > NEAR:
                 return None
         x, residual = self.search(x, 0.0, TIGHT)
-        return x if residual <= SOLVED else None
+        return x if residual <= SOLVED and self.ends(x, LOOSE).arrival > 0 else None
 
     def fresh(self, departure: float, planar: PlanarGuess) -> list[Unknowns]:
         """Solutions for a departure in s after the epoch, from nothing; sorted by flight time."""
@@ -138,7 +167,7 @@ class Meeting:
         return distinct(self._moved(leaving, shift) for shift in (lead, lead - period))
 
     def _time_to(self, place: np.ndarray, arrival: float, period: float) -> float:
-        """Time in s, within one period, after which the planet comes to the direction of a place."""
+        """Time in s, within one period, after which the target comes to the direction of a place."""
         times = arrival + np.linspace(0, period, 721)
         places = self.state(self.target, times)[:, POSITION]
         cosine = places @ place / np.linalg.norm(places, axis=1)
@@ -147,7 +176,7 @@ class Meeting:
         return float(times[i] - arrival + 0.5 * (left - right) / (left - 2 * here + right) * (times[1] - times[0]))
 
     def _moved(self, unknowns: Unknowns, shift: float) -> Unknowns | None:
-        """The true solution that a flight becomes as the planet moves to its place from a shift in s, or None."""
+        """The true solution that a flight becomes as the target moves to its place from a shift in s, or None."""
         x, residual = self.search(unknowns, self.smoothing, shift=shift)
         if residual > NEAR:
             return None
@@ -165,27 +194,41 @@ class Meeting:
             step *= 1.5
         return self.sharpen(x)
 
-    def _later(self, unknowns: Unknowns, departure: float) -> Unknowns:
-        """Unknowns for another departure that mean to arrive at the same time: the costates where the flight then is,
-        or, for an earlier one, would have been."""
+    def _later(self, unknowns: Unknowns, departure: float, slope: float | None = None) -> Unknowns:
+        """Unknowns for another departure: the costates where the flight then is, or, for an earlier one, would have
+        been. slope : d time / d date, without which they mean to arrive at the same time."""
         wait = (departure - unknowns.departure) / TIME_UNIT
         mirror = np.repeat([1.0, np.sign(wait), np.sign(wait), 1.0], 3) if wait else 1.0  # time runs backwards
         y = costates.propagate(self.start(unknowns) * mirror, abs(wait), self.sail, tolerance=LOOSE).end * mirror
         lam = y[COSTATES] / np.linalg.norm(y[COSTATES])
-        return Unknowns(lam, max(unknowns.span - wait, 0.5 * unknowns.span), departure)
+        span = unknowns.span + wait * (-1.0 if slope is None else slope)
+        return Unknowns(lam, max(span, 0.5 * unknowns.span), departure)
 
-    def carried(self, unknowns: Unknowns, departure: float, halvings: int = 4) -> Unknowns | None:
-        """The true solution for another departure in s after the epoch, from one nearby, or None: in one step, or in
-        halves of halves."""
-        same = Unknowns(unknowns.costates, unknowns.span, departure)
-        for guess in (self._later(unknowns, departure), same):
-            for smoothing in sorted({0.0, self.smoothing}):
-                y, residual = self.search(guess, smoothing)
-                if residual <= NEAR:
-                    true = self.sharpen(y)
-                    if true is not None:
-                        return true
-        if halvings == 0:
-            return None
-        middle = self.carried(unknowns, 0.5 * (unknowns.departure + departure), halvings - 1)
-        return None if middle is None else self.carried(middle, departure, halvings - 1)
+    def nearby(self, unknowns: Unknowns, departure: float, tolerance: float = LOOSE) -> Unknowns | None:
+        """The flight for another departure near by, in s after the epoch, as good as a tolerance makes it; None where
+        there is none of the same family, whose flight time goes on as its slope says."""
+        slope = self.ends(unknowns, LOOSE).slope
+        guess = self._later(unknowns, departure, slope)
+        for smoothing in sorted({0.0, self.smoothing}):
+            x, residual = self.search(guess, smoothing, tolerance if smoothing == 0.0 else LOOSE, most=NEARBY)
+            if residual > NEAR:
+                continue
+            true = x if smoothing == 0.0 else self.sharpen(x)
+            if true is not None and abs(true.span / guess.span - 1) < STRAYS and self.ends(true, LOOSE).arrival > 0:
+                return true if tolerance == LOOSE or residual <= SOLVED else None
+        return None
+
+    def carried(self, unknowns: Unknowns, departure: float) -> Unknowns | None:
+        """The flight of the same family, good to some 1e-7, for another departure in s after the epoch, in steps that
+        adapt; None where the family ends before."""
+        x, step = unknowns, departure - unknowns.departure
+        while x.departure != departure:
+            left = departure - x.departure
+            y = self.nearby(x, departure if abs(step) >= 0.99 * abs(left) else x.departure + step)
+            if y is not None:
+                x, step = y, 2 * step
+            elif abs(step) < SHORTEST_STEP:
+                return None
+            else:
+                step = 0.4 * np.copysign(min(abs(step), abs(left)), left)
+        return x

@@ -1,26 +1,29 @@
-"""Fastest flights from the Earth, or another planet, to meet a planet where it is: for a date, or a window of dates.
+"""Fastest flights from the Earth, or another body, to meet a planet or a small body where it is: for a date, or for the
+best date of a window.
 
-Each date is solved as in `planet_conditions`; from date to date flights are handed on, wherever they are faster, and
-the best date is refined. Costates are given as -d time / d (position, velocity): lam . (f - motion of the planet) = 1
-at arrival.
+Dates some months apart are searched afresh as in `planet_conditions`; each flight found is followed downhill over its
+date as in `launch_dates`, and handed on from date to date wherever it is faster, which makes the window's curve.
+Costates are given as -d time / d (position, velocity): lam . (f - motion of the target) = 1 at arrival.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from sailviz import ephemeris
-from sailviz.constants import AU
-from sailviz.design.minimum_time import costates
+from sailviz.constants import AU, DAY
+from sailviz.design.minimum_time import costates, launch_dates
+from sailviz.design.minimum_time.effort import Effort, Ending
+from sailviz.design.minimum_time.launch_dates import LocalBest
+from sailviz.design.minimum_time.moving_bodies import MovingBody, Planet
 from sailviz.design.minimum_time.orbit_conditions import OrbitProblem, PlanarGuess
 from sailviz.design.minimum_time.orbits import ROWS, NoGuess, planar_guess
-from sailviz.design.minimum_time.planet_conditions import SPREAD, Meeting
+from sailviz.design.minimum_time.planet_conditions import Meeting
 from sailviz.design.minimum_time.state_costate import (
-    COSTATES,
     POSITION,
     SPEED_UNIT,
     STATE,
@@ -29,30 +32,38 @@ from sailviz.design.minimum_time.state_costate import (
     canonical_sail,
     revolutions,
 )
-from sailviz.design.minimum_time.unknowns import TIGHT, Unknowns, fastest, span_of
+from sailviz.design.minimum_time.unknowns import TIGHT, Unknowns, fastest
 from sailviz.propulsion.solar_sail import Film
 
 DATES = 41  # tried in a window
-ANCHORS = 4  # dates between two of a window's fresh searches
-FASTER = 1e-9  # relative flight time by which a flight handed on must win
+APART = 105 * DAY  # s between a window's fresh searches, at most where it is not very long
+FEWEST_ANCHORS, MOST_ANCHORS = 3, 60
+TOO_SLOW = 1.5  # times the fastest flight found: not followed
+FASTER = 1e-6  # relative flight time by which a flight handed on must win
 
 
 @dataclass(frozen=True)
 class Window:
-    """Launch-window curve: departures (n,) datetime64, times (n,) s of the fastest flight found, NaN where none was."""
+    """Launch-window curve: departures (n,) datetime64, times (n,) s of the fastest flight found, NaN where none was.
+    best_departures (k,) datetime64, best_times (k,) s: the local best dates found, fastest first. edge : "first" or
+    "last" where the best of all is that day of the window only for want of days beyond it, else ""."""
 
     departures: np.ndarray
     times: np.ndarray
+    best_departures: np.ndarray
+    best_times: np.ndarray
+    edge: str
 
 
 @dataclass(frozen=True)
 class Rendezvous:
-    """A flight that meets a planet. time s; departure, arrival datetime64; revolutions swept about the Sun; costates
+    """A flight that meets a body. time s; departure, arrival datetime64; revolutions swept about the Sun; costates
     (6,) at departure, -d time / d (position, velocity) in units of mu = 1 and one au; hamiltonian, the H that belongs
     to them: +1 and the planet's motion at the arrival times the costates there, since the end moves; residual, largest
-    miss in the same units; hamiltonian_drift relative, along the flight; solutions distinct ones found for this date.
-    position m and velocity m/s (3,) at departure. window : the curve around the best departure, where a window was
-    asked for.
+    miss in the same units; hamiltonian_drift relative, along the flight; solutions distinct ones found for this date,
+    or best dates of the window. position m and velocity m/s (3,) at departure. window : the curve around the best
+    departure, where a window was asked for. slope : d time / d departure, zero but for rounding at a best date.
+    ending : how the search ended.
 
     feasible False and reason: none was found; time is then NaN.
     """
@@ -74,6 +85,8 @@ class Rendezvous:
     device: Film | str
     characteristic_acceleration: float
     window: Window | None = None
+    slope: float = np.nan
+    ending: Ending = field(default_factory=Ending)
 
 
 Date = np.datetime64 | str
@@ -81,66 +94,71 @@ Curve = list[Unknowns | None]  # the fastest flight, or none, of each date
 
 
 def rendezvous(
-    target: str,
+    target: str | MovingBody,
     departure: Date | tuple[Date, Date] | list[Date],
     device: Film | str = "ideal",
     characteristic_acceleration: float = 1e-3,
     *,
-    origin: str = "Earth",
+    origin: str | MovingBody = "Earth",
     dates: int = DATES,
     source: str = "mean-elements",
     workers: int = 2,
     progress: Callable[[float, str], None] | None = None,
+    time_limit: float | None = None,
+    effort: Effort | None = None,
 ) -> Rendezvous:
-    """The fastest flight found from a planet to another that leaves on a date, or on the best date of a window.
+    """The fastest flight found from a body to another that leaves on a date, or on the best date of a window.
 
-    target, origin : names in `ephemeris.PLANETS`. departure : a datetime64 or its text, or a pair (first, last), of
-    which evenly spread dates are tried, and the best is refined to seconds. device : a sail's name or a Film.
-    characteristic_acceleration : m/s2. source : as in `ephemeris.planet_position`. progress(share, words). Starts and
-    ends with the planets' velocities; their pull is neglected. Locally optimal, best found: others are not excluded.
-    ValueError for planets, a window or a thrust that are none.
+    target, origin : names in `ephemeris.PLANETS`, or bodies such as a `moving_bodies.SmallBodyOrbit`. departure : a
+    datetime64 or its text (UTC), or a pair (first, last), whose best date is found to seconds; evenly spread dates of
+    it make its curve. device : a sail's name or a Film. characteristic_acceleration : m/s2. source : of planets, as in
+    `ephemeris.planet_position`. progress(share, words) and time_limit s, or an effort with both: at its end the best
+    so far. Starts and ends with the bodies' velocities; their pull is neglected. Locally optimal, best found: others
+    are not excluded. ValueError for bodies, a window or a thrust that are none.
     """
-    _check(target, origin, characteristic_acceleration)
+    effort = Effort.of(effort, progress, time_limit)
+    begin, aim = _body(origin, source), _body(target, source)
+    _check(aim, begin, characteristic_acceleration)
     first, last = _window(departure)
-    meeting = Meeting(origin, target, first, canonical_sail(device, characteristic_acceleration), source)
+    sail = canonical_sail(device, characteristic_acceleration)
+    meeting = Meeting(begin, aim, first, sail, effort)
+    asked = Asked(meeting, device, characteristic_acceleration)
     length = float((last - first) / np.timedelta64(1, "ns")) * 1e-9
-    times = np.linspace(0.0, length, dates) if length > 0 else np.zeros(1)
-    anchors = sorted({*range(0, len(times), ANCHORS), len(times) - 1})
-    total, done = len(anchors) + 3, 0
-
-    def report() -> None:
-        nonlocal done
-        done += 1
-        if progress is not None:
-            progress(done / total, "departures")
-
     try:
-        planar = _planar(meeting, device, characteristic_acceleration)
+        planar = _planar(asked)
     except NoGuess as reason:
-        return _nothing(meeting, first, str(reason), device, characteristic_acceleration)
-    curve, solutions = _curve(meeting, times, anchors, planar, workers, report)
-    report()
-    best = fastest(curve)
-    if best is None:
-        when = f"that leaves between {first} and {last}" if last > first else f"for {first}"
-        return _nothing(meeting, first, f"no flight found {when}", device, characteristic_acceleration)
-    i, window = curve.index(best), None
+        return _nothing(asked, first, str(reason))
     if length > 0:
-        spans = np.array([np.nan if x is None else x.span for x in curve])
-        window = Window(first + (times * 1e9).astype("timedelta64[ns]"), spans * TIME_UNIT)
-        best = _refined(meeting, best, times, i)
-    report()
-    found = _result(meeting, best, device, characteristic_acceleration, solutions.get(i, 1), window)
-    report()
-    return found
+        return _best_of_window(asked, planar, length, dates, workers)
+    found: list[Unknowns] = []
+    with effort.stoppable():
+        found = meeting.fresh(0.0, planar)
+    effort.report(0.9, "departures")
+    if not found:
+        return _nothing(asked, first, f"no flight found for {first}")
+    return _result(asked, found[0], len(found))
 
 
-def _check(target: str, origin: str, characteristic_acceleration: float) -> None:
-    for name in (target, origin):
-        if name not in ephemeris.PLANETS:
-            raise ValueError(f"no ephemeris for {name!r}; there are {', '.join(ephemeris.PLANETS)}")
+@dataclass(frozen=True)
+class Asked:
+    """Between which bodies, and by what sail."""
+
+    meeting: Meeting
+    device: Film | str
+    characteristic_acceleration: float
+
+
+def _body(name: str | MovingBody, source: str) -> MovingBody:
+    if not isinstance(name, str):
+        return name
+    if name not in ephemeris.PLANETS:
+        raise ValueError(f"no ephemeris for {name!r}; there are {', '.join(ephemeris.PLANETS)}")
+    return Planet(name, source)
+
+
+def _check(target: MovingBody, origin: MovingBody, characteristic_acceleration: float) -> None:
     if target == origin:
-        raise ValueError(f"a rendezvous joins two planets, not {target} with itself")
+        raise ValueError(f"a rendezvous joins two bodies, not {target.name} with itself")
     if not (np.isfinite(characteristic_acceleration) and characteristic_acceleration > 0):
         raise ValueError(f"a characteristic acceleration must be positive, not {characteristic_acceleration}")
 
@@ -154,34 +172,93 @@ def _window(departure: Date | tuple[Date, Date] | list[Date]) -> tuple[np.dateti
     return first, last
 
 
-def _planar(meeting: Meeting, device: Film | str, characteristic_acceleration: float) -> PlanarGuess:
-    """The flight between circles of the planets' mean distances."""
+def _planar(asked: Asked) -> PlanarGuess:
+    """The flight between circles of the bodies' mean distances."""
+    meeting = asked.meeting
     origin, target = meeting.orbit(meeting.origin, 0.0), meeting.orbit(meeting.target, 0.0)
-    return planar_guess(OrbitProblem(origin, target, meeting.sail), device, characteristic_acceleration)
+    return planar_guess(OrbitProblem(origin, target, meeting.sail), asked.device, asked.characteristic_acceleration)
 
 
-def _curve(
-    meeting: Meeting,
-    times: np.ndarray,
-    anchors: list[int],
-    planar: PlanarGuess,
-    workers: int,
-    searched: Callable[[], None],
-) -> tuple[Curve, dict[int, int]]:
-    """The fastest flight of each of the times (n,) s, from fresh searches at the anchors handed on both ways; and how
-    many flights each of these searches found, if any. searched() is called after each."""
+def _best_of_window(asked: Asked, planar: PlanarGuess, length: float, dates: int, workers: int) -> Rendezvous:
+    """The flight of the best date from the epoch to a length in s after it, with the curve of the window."""
+    meeting, effort = asked.meeting, asked.meeting.effort
+    anchors = np.linspace(0.0, length, int(np.clip(length // APART + 2, FEWEST_ANCHORS, MOST_ANCHORS)))
+    done = 0
 
-    def fresh(i: int) -> list[Unknowns]:
-        found = meeting.fresh(times[i], planar)
-        searched()
+    def fresh(departure: float) -> list[Unknowns]:
+        nonlocal done
+        found = meeting.fresh(departure, planar)
+        flights.extend(found)
+        done += 1
+        effort.count("dates searched afresh")
+        effort.report(0.6 * done / len(anchors), "departures")
         return found
 
-    with ThreadPoolExecutor(workers) as pool:
-        found = dict(zip(anchors, pool.map(fresh, anchors), strict=True))
-        begun: Curve = [found[i][0] if found.get(i) else None for i in range(len(times))]
+    def followed(unknowns: Unknowns) -> None:
+        bests.append(launch_dates.local_best(meeting, unknowns, 0.0, length))
+
+    flights: list[Unknowns] = []
+    bests: list[LocalBest | None] = []
+    times = np.linspace(0.0, length, dates)
+    curve: Curve = [None] * dates
+    with effort.stoppable(), ThreadPoolExecutor(workers) as pool:
+        list(pool.map(fresh, anchors))
+        fast = TOO_SLOW * min((x.span for x in flights), default=np.inf)
+        list(pool.map(followed, [x for x in flights if x.span <= fast]))
+        effort.report(0.8, "departures")
+        begun = _begun(meeting, [*flights, *(x.flight for x in launch_dates.distinct(bests))], times)
         ways = list(pool.map(lambda way: _hand_on(meeting, begun, times, way), (1, -1)))
-    curve = [fastest(point) for point in zip(*ways, strict=True)]
-    return curve, {i: len(flights) for i, flights in found.items() if flights}
+        curve = [fastest(point) for point in zip(*ways, strict=True)]
+        effort.report(0.9, "departures")
+        known = launch_dates.distinct(bests)
+        deeper = [x for x in _valleys(curve) if not any(_leads_to(x, best, length / dates) for best in known)]
+        list(pool.map(followed, deeper))
+    return _of_window(asked, launch_dates.distinct(bests), flights, times, curve)
+
+
+def _of_window(
+    asked: Asked, bests: list[LocalBest], flights: list[Unknowns], times: np.ndarray, curve: Curve
+) -> Rendezvous:
+    first = asked.meeting.epoch
+    best = fastest([*(x.flight for x in bests), *flights])
+    if best is None:
+        last = first + np.timedelta64(round(times[-1]), "s")
+        return _nothing(asked, first, f"no flight found that leaves between {first} and {last}")
+    spans = np.array([np.nan if x is None else x.span for x in curve])
+    edge = next((("first", "last")[int(x.slope < 0)] for x in bests if x.flight is best and x.at_edge), "")
+    window = Window(
+        departures=first + (times * 1e9).astype("timedelta64[ns]"),
+        times=spans * TIME_UNIT,
+        best_departures=first + (np.array([x.flight.departure for x in bests]) * 1e9).astype("timedelta64[ns]"),
+        best_times=np.array([x.flight.span for x in bests]) * TIME_UNIT,
+        edge=edge,
+    )
+    return _result(asked, best, max(len(bests), 1), window)
+
+
+def _begun(meeting: Meeting, flights: list[Unknowns], times: np.ndarray) -> Curve:
+    """Flights, each brought to the date of the times (n,) s that is nearest to it; the fastest of each."""
+    curve: Curve = [None] * len(times)
+    for x in flights:
+        i = int(np.argmin(np.abs(times - x.departure)))
+        curve[i] = fastest([curve[i], meeting.carried(x, times[i])])
+    return curve
+
+
+def _valleys(curve: Curve) -> list[Unknowns]:
+    """The flights of the curve that no neighbour beats."""
+    around = [None, *curve, None]
+    return [
+        x
+        for before, x, after in zip(around, curve, around[2:], strict=False)
+        if x is not None and all(y is None or x.span <= y.span for y in (before, after))
+    ]
+
+
+def _leads_to(unknowns: Unknowns, best: LocalBest, spacing: float) -> bool:
+    """Whether a flight of the curve is the neighbour of a best date that is known."""
+    near = abs(unknowns.departure - best.flight.departure) <= spacing
+    return near and unknowns.span >= best.flight.span * (1 - FASTER)
 
 
 def _hand_on(meeting: Meeting, begun: Curve, times: np.ndarray, way: int) -> Curve:
@@ -197,67 +274,42 @@ def _hand_on(meeting: Meeting, begun: Curve, times: np.ndarray, way: int) -> Cur
     return found
 
 
-def _refined(meeting: Meeting, unknowns: Unknowns, times: np.ndarray, i: int) -> Unknowns:
-    """The flight of the best departure between the neighbours of date i, to seconds."""
-    from scipy.optimize import minimize_scalar
-
-    low, high = times[max(i - 1, 0)], times[min(i + 1, len(times) - 1)]
-    best = unknowns
-
-    def span(departure: float) -> float:
-        nonlocal best
-        y = meeting.carried(best, departure)
-        if y is None:
-            return np.inf
-        best = min(best, y, key=span_of)
-        return y.span
-
-    minimize_scalar(span, bounds=(low, high), method="bounded", options={"xatol": 60.0, "maxiter": 30})
-    return best
-
-
-def _result(
-    meeting: Meeting,
-    unknowns: Unknowns,
-    device: Film | str,
-    characteristic_acceleration: float,
-    local: int,
-    window: Window | None,
-) -> Rendezvous:
+def _result(asked: Asked, unknowns: Unknowns, local: int, window: Window | None = None) -> Rendezvous:
+    effort, meeting = asked.meeting.effort, replace(asked.meeting, effort=Effort())  # to be told even if it was stopped
     start, span = meeting.start(unknowns), unknowns.span
     flight = costates.propagate(start, span, meeting.sail, times=np.linspace(0, span, ROWS), tolerance=TIGHT)
-    met = unknowns.departure + span * TIME_UNIT
-    before, there, after = meeting.state(meeting.target, met + np.array([-SPREAD, 0.0, SPREAD]))
-    motion = (after - before) / (2 * SPREAD / TIME_UNIT)  # mean elements do not move quite as Kepler has it
-    gain = flight.hamiltonian - float(motion @ flight.end[COSTATES])
+    (there,) = meeting.state(meeting.target, unknowns.departure + span * TIME_UNIT)
+    ends = meeting.ends(unknowns)
     departure = meeting.epoch + np.timedelta64(round(unknowns.departure * 1e9), "ns")
-    where = "the window's dates" if window is not None else "both ways of meeting the planet"
+    where = "the window's dates" if window is not None else f"both ways of meeting {meeting.target.name}"
+    effort.report(1.0, "done")
     return Rendezvous(
         time=float(span * TIME_UNIT),
         departure=departure,
         arrival=departure + np.timedelta64(round(span * TIME_UNIT * 1e9), "ns"),
         revolutions=revolutions(flight.rows),
-        costates=unknowns.costates / gain,
+        costates=unknowns.costates / ends.arrival,
         residual=float(np.abs(flight.end[STATE] - there).max()),
-        hamiltonian=flight.hamiltonian / gain,
-        hamiltonian_drift=flight.drift / gain,
+        hamiltonian=flight.hamiltonian / ends.arrival,
+        hamiltonian_drift=flight.drift / ends.arrival,
         solutions=local,
         claim=f"best found over {where}; a faster flight is not excluded",
         feasible=True,
         reason="",
         position=start[POSITION] * AU,
         velocity=start[VELOCITY] * SPEED_UNIT,
-        device=device,
-        characteristic_acceleration=characteristic_acceleration,
+        device=asked.device,
+        characteristic_acceleration=asked.characteristic_acceleration,
         window=window,
+        slope=ends.slope,
+        ending=effort.found(),
     )
 
 
-def _nothing(
-    meeting: Meeting, first: np.datetime64, reason: str, device: Film | str, characteristic_acceleration: float
-) -> Rendezvous:
-    (state,) = meeting.state(meeting.origin, 0.0)
+def _nothing(asked: Asked, first: np.datetime64, reason: str) -> Rendezvous:
+    (state,) = asked.meeting.state(asked.meeting.origin, 0.0)
     return Rendezvous(
         np.nan, first, np.datetime64("NaT"), np.nan, np.full(6, np.nan), np.nan, np.nan, np.nan, 0, reason,
-        False, reason, state[POSITION] * AU, state[VELOCITY] * SPEED_UNIT, device, characteristic_acceleration,
+        False, reason, state[POSITION] * AU, state[VELOCITY] * SPEED_UNIT, asked.device,
+        asked.characteristic_acceleration, ending=asked.meeting.effort.not_found(),
     )  # fmt: skip

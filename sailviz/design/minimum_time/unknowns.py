@@ -58,16 +58,18 @@ def off_unit_length(costates: np.ndarray) -> np.ndarray:
     return (np.sum(costates**2, 1) - 1)[:, None]
 
 
-def solved(residuals: Callable[[np.ndarray], np.ndarray], guess: Unknowns, tolerance: float) -> tuple[Unknowns, float]:
+def solved(
+    residuals: Callable[[np.ndarray], np.ndarray], guess: Unknowns, tolerance: float, most: int | None = None
+) -> tuple[Unknowns, float]:
     """The unknowns near a guess, its departure kept, that bring residuals(batch (m, 7)) -> (m, k) to zero, and the
-    largest residual left. tolerance : of the propagation behind the residuals; TIGHT polishes."""
+    largest residual left. tolerance : of the propagation behind the residuals; TIGHT polishes. most : steps."""
     tight = tolerance < LOOSE
     found = solve(
         residuals,
         guess.packed,
         step=1e-7 if tight else 1e-6,
         goal=1e-13 if tight else 1e-7,
-        most=10 if tight else 60,
+        most=most or (10 if tight else 60),
         limit=np.array([0.3] * 6 + [0.25 * guess.span]),
     )
     return Unknowns.unpacked(found.unknowns, guess.departure), found.residual

@@ -150,7 +150,8 @@ PLANETS = {
     "Neptune": [100, 130, 230],
     "Moon": [190, 190, 196],
 }
-PLANET_DOTS = {"Mercury": 5.8, "Venus": 6.8, "Earth": 7.2, "Mars": 6.2, "Jupiter": 8.6, "Saturn": 8.0}  # ui points
+PLANET_DOTS = {"Mercury": 5.8, "Venus": 6.8, "Earth": 7.2, "Mars": 6.2, "Jupiter": 8.6, "Saturn": 8.0, "Uranus": 7.6,
+               "Neptune": 7.6}  # fmt: skip  # ui points
 
 WIDTH = {  # half the width of a line in ui points
     "future": 0.9,

@@ -14,7 +14,7 @@ from sailviz.run import dates, unit_guard
 from sailviz.sky.bodies import BODIES, SkyBody
 from sailviz.words import nearest, shown
 
-MEASURED = ("sun", "mercury", "venus", "earth", "moon", "mars", "jupiter", "saturn")
+MEASURED = ("sun", "mercury", "venus", "earth", "moon", "mars", "jupiter", "saturn", "uranus", "neptune")
 STAR_FAR = 1e10  # m, from which a flight that follows no body's gravity has the units of one round the Sun
 
 

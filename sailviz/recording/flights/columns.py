@@ -32,7 +32,10 @@ NAMES = {  # of a column, without unit and signs -> what it is
     "normal": ("normal", "n", "attitudenormal"),
 }
 CENTRES = {  # words of a column's name that say about which body its rows are -> its word
-    **{word: word for word in ("sun", "mercury", "venus", "earth", "moon", "mars", "jupiter", "saturn")},
+    **{
+        word: word
+        for word in ("sun", "mercury", "venus", "earth", "moon", "mars", "jupiter", "saturn", "uranus", "neptune")
+    },
     "heliocentric": "sun",
     "geocentric": "earth",
     "selenocentric": "moon",

@@ -61,6 +61,8 @@ def round_the_sun(scene: Scene) -> Faults:
     found, target = [], scene.target
     if target is not None and target.planet is not None and scene.body != "sun":
         found.append(("target.planet", "a planet's orbit goes round the Sun"))
+    if target is not None and target.elements_date is not None and scene.epoch is None:
+        found.append(("target.elements_date", "where the body stands is known at a date: give epoch"))
     if scene.environment.third_body is not None and scene.body != "sun":
         found.append(("environment.third_body", "a third body goes round the Sun"))
     return found

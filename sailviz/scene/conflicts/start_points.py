@@ -30,6 +30,9 @@ PLANETS = {  # semi-major axis au and eccentricity, to a part in a thousand: the
     "earth": (1.0, 0.017),
     "mars": (1.524, 0.093),
     "jupiter": (5.203, 0.048),
+    "saturn": (9.537, 0.054),
+    "uranus": (19.189, 0.047),
+    "neptune": (30.07, 0.009),
 }
 
 

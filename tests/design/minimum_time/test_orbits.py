@@ -12,7 +12,7 @@ from sailviz import ephemeris
 from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.design.minimum_time import circle_to_circle, costates, orbit_to_orbit, rendezvous
 from sailviz.design.minimum_time.effort import FOUND, IMPOSSIBLE, NOT_FOUND, TIME_LIMIT, Effort
-from sailviz.design.minimum_time.planet_conditions import planet_state
+from sailviz.design.minimum_time.moving_bodies import planet_state
 from sailviz.design.minimum_time.state_costate import SPEED_UNIT, TIME_UNIT, canonical_sail
 from sailviz.elements import Elements, elements
 from sailviz.propulsion.solar_sail import Film

@@ -42,6 +42,14 @@ PLANETS = {
         [9.53667594, 0.05386179, 2.48599187, 49.95424423, 92.59887831, 113.66242448],
         [-0.00125060, -0.00050991, 0.00193609, 1222.49362201, -0.41897216, -0.28867794],
     ),
+    "Uranus": (
+        [19.18916464, 0.04725744, 0.77263783, 313.23810451, 170.95427630, 74.01692503],
+        [-0.00196176, -0.00004397, -0.00242939, 428.48202785, 0.40805281, 0.04240589],
+    ),
+    "Neptune": (
+        [30.06992276, 0.00859048, 1.77004347, -55.12002969, 44.96476227, 131.78422574],
+        [0.00026291, 0.00005105, 0.00035372, 218.45945325, -0.32241464, -0.00508664],
+    ),
 }
 
 
@@ -68,6 +76,13 @@ def on_conic(a, e, inclination, raan, argument, anomaly) -> np.ndarray:
 MU_ALTAIRA = 139_348_062_043.343e9  # m3/s2
 MADE_UP = {"PlanetX": (15955016885.357e3, 0.345, 40.0, 341.693, 30.0, 133.427)}  # a m, e, angles in degrees at t = 0
 
+# JPL Horizons, solution 218: epoch JD TDB, a au, e, i, raan, argument, mean anomaly in degrees
+SMALL_BODIES = {
+    "Apophis": (2459215.5, 0.9225071817339578, 0.1915216892529348, 3.336751319526047, 204.0389271089114,
+                126.6520518833791, 127.3225632500591),
+}  # fmt: skip
+TDB_AHEAD = 69.184  # s of UTC, since 2017
+
 
 def planet_ellipse(name: str, seconds):
     """a m, e, i, raan, argument, mean anomaly rad at seconds after J2000; of a made-up one after t = 0."""
@@ -75,6 +90,20 @@ def planet_ellipse(name: str, seconds):
         a, e, *angles = MADE_UP[name]
         i, raan, argument, anomaly = np.radians(angles)
         turned = np.sqrt(MU_ALTAIRA / a**3) * np.atleast_1d(seconds)
+        return (
+            a + 0 * turned,
+            e + 0 * turned,
+            i + 0 * turned,
+            raan + 0 * turned,
+            argument + 0 * turned,
+            anomaly + turned,
+        )
+    if name in SMALL_BODIES:
+        day, axis, e, *angles = SMALL_BODIES[name]
+        i, raan, argument, anomaly = np.radians(angles)
+        a = axis * AU
+        since = np.atleast_1d(seconds) + TDB_AHEAD - (day - 2451545.0) * DAY
+        turned = np.sqrt(1.327_124_400_18e20 / a**3) * since
         return (
             a + 0 * turned,
             e + 0 * turned,

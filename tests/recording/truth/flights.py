@@ -600,6 +600,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "spiral": scene("spirals/optical-sail", propagation__outputs=161),
     "approximations": scene("spirals/first-order", propagation__outputs=101),
     "transfer": scene("transfers/mars-rendezvous-2031", propagation__outputs=49),
+    "small-body": scene("transfers/apophis", propagation__outputs=49),
     "primer": scene("transfers/ideal-law-real-film", propagation__outputs=41),
     "thruster": scene("spirals/radial-escape", propagation__outputs=61),
     "orbits": scene("transfers/earth-mercury-orbits", propagation__outputs=121),

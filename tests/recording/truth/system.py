@@ -19,7 +19,10 @@ PLANET_HUES = {
     "Mars": "orange",
     "Jupiter": "orange",
     "Saturn": "yellow",
+    "Uranus": "cyan",
+    "Neptune": "blue",
     "PlanetX": "grey",
+    "Apophis": "grey",
 }
 
 

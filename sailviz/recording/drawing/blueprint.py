@@ -21,6 +21,7 @@ NOW = rrb.TimeRangeBoundary.cursor_relative()
 WHOLE_TIME = rrb.TimeAxis(view_range=rr.TimeRange(start=ENDLESS, end=ENDLESS))
 ROWS = [104, 728]  # shares of the line of the moment and of everything below it
 COLUMNS = [63, 37]
+WITH_AXIS = [300, 190, 290]
 BARS = "Flights [%] by distance from the calm flight [0.001 au]"
 
 
@@ -67,7 +68,8 @@ def left(layout: Layout) -> rrb.Container:
 
 
 def right(layout: Layout) -> rrb.Container:
-    """The craft from close by, and curves: two in sight at most, the others as tabs of the last."""
+    """The craft from close by, and curves: two in sight at most, the others as tabs of the last; one, and where its
+    axis points, of a craft that turns."""
     parts: list[View] = [space_view(layout, layout.close)]
     plots = [plot_view(plot) for plot in layout.plots]
     lanes = [lane_view(layout)] if layout.lanes else []
@@ -76,6 +78,10 @@ def right(layout: Layout) -> rrb.Container:
             origin="/flights", contents=["+ /flights/**"], name=BARS, plot_legend=rrb.PlotLegend(visible=False)
         )
         parts += [tabs([*plots, *lanes]), bars]
+    elif layout.axis is not None:
+        axis = space_view(layout, layout.axis)
+        parts += [plots[0], tabs([axis, *plots[1:], *lanes])] if plots else [tabs([axis, *lanes])]
+        return rrb.Vertical(*parts, row_shares=WITH_AXIS if plots else [400, 380])
     elif len(plots) > 1:
         parts += [plots[0], tabs([*plots[1:], *lanes])]
     elif plots or lanes:

@@ -16,6 +16,7 @@ from sailviz.recording import timelines
 from sailviz.recording.companions import Overlay
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.arrival_plane import arrivals_of
+from sailviz.recording.drawing.axis_trace import TRACE, has_axis, in_front, log_axis
 from sailviz.recording.drawing.blueprint import blueprint
 from sailviz.recording.drawing.curves import Curves, words_of
 from sailviz.recording.drawing.description import WALL, about, event_line, gap_words
@@ -177,11 +178,19 @@ class Drawing:
         if story.frame.low:
             notes = orbit_words(story)
         else:
-            notes = [WALL] if story.most > 0 else []
+            notes = [TRACE if has_axis(story) and in_front(story) else WALL] if story.most > 0 else []
             notes += system_words(story)
         if setting.ensembles:
             spans |= log_ensembles(picture, setting, self._frame)
-        return self._layout(spaces, close, plots, spans, story, last, story.duration), notes, aside
+        layout = self._layout(spaces, close, plots, spans, story, last, story.duration)
+        if has_axis(story):
+            axis, more = log_axis(picture, story)
+            layout.spans |= more
+            if in_front(story):
+                layout.spaces.insert(0, axis)
+            else:
+                layout.axis = axis
+        return layout, notes, aside
 
     def _layout(
         self,

@@ -34,6 +34,7 @@ class Layout:
     title: str
     spaces: list[Space]  # tabs of the main view
     close: Space  # what is never behind a tab
+    axis: Space | None = None  # where the axis of a craft that turns points, in front of all curves but the first
     plots: list[PlotView] = field(default_factory=list)  # most telling first
     lanes: list[str] = field(default_factory=list)
     arrivals: tuple[Arrival, ...] = ()  # planes in which ensembles are seen

@@ -35,6 +35,7 @@ QUANTITY = {  # what a curve shows, by the words of its plot
     "push": PUSH,
     "drag": PUSH,
     "torque": [232, 232, 255],
+    "momentum": [186, 140, 255],
     "cone angle": PUSH,
     "sail angle": SUN,
     "clock angle": [255, 150, 220],
@@ -102,6 +103,8 @@ NOMINAL = [255, 255, 255]
 AXES = [110, 126, 155]
 PRIMER = [64, 224, 208]
 ECLIPTIC = [60, 90, 150, 6]
+DIRECTIONS = [20, 28, 50, 200]  # the unit sphere
+GRID = [52, 66, 98]  # its parallels and meridians
 PLUMB = [150, 166, 190]
 
 FILM_LIT = [255, 200, 92]

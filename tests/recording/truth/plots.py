@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 
-from . import phases
+from . import axis, phases
 from .facts import AU, DAY, path_word, planet_place
 from .measure import hue, same_number
 from .now import heights
@@ -356,7 +356,9 @@ def about(f, entity):
         assert words == {told}, f"{name} is {' and '.join(sorted(words))}, not {told}"
     assert not re.search(r"expected|_deg|_au|/world|a_c", text)
     many = text.count("\n| **") > 1  # then the table takes the room
-    assert many or ("**wall on the trail**" in text) == any(e.startswith("/world/fence") for e in f.picture.entities)
+    walls, sphere = any(e.startswith("/world/fence") for e in f.picture.entities), axis.first(f)
+    assert many or ("**wall on the trail**" in text) == (walls and not sphere)
+    assert ("**sphere** is of directions: the cyan line" in text) == sphere
     if "the **turquoise** arrow is the primer" in text:
         assert "/sail/primer" in f.picture.entities
     rows_told(f, text)

@@ -2,7 +2,7 @@
 
 /world is inertial, in units of `length`; the craft may be carried along its orbit. /sail of a sail round the Sun has x
 radial, y transverse, z normal to the orbit, round a planet x from the light; that of a tether x transverse, y normal,
-z up.
+z up. /axis is inertial, of the rows themselves.
 """
 
 from __future__ import annotations
@@ -19,12 +19,19 @@ def near(entity: str) -> bool:
     return entity == "/sail" or entity.startswith("/sail/")
 
 
+def on_sphere(entity: str) -> bool:
+    """Whether an entity stands on or in the sphere of directions."""
+    return entity == "/axis" or entity.startswith("/axis/")
+
+
 def hanging(flight) -> bool:
     return flight.truth.kind == "plasma-brake"
 
 
 def seen(flight, entity: str, vectors) -> np.ndarray:
     """Inertial vectors (n, 3) as the view of an entity shows their directions."""
+    if on_sphere(entity):
+        return np.asarray(vectors, float)
     if not near(entity):
         return flight.truth.carried(vectors)
     close = np.einsum("nij,nj->ni", flight.truth.close_frame, vectors)
@@ -42,19 +49,20 @@ def fixed(flight, entity: str, vectors) -> np.ndarray:
 def body(flight, entity: str) -> np.ndarray:
     """(n, 3, 3), columns: the body's axes of /attitude/quaternion in the view of an entity; of what spins in the body
     those that spin."""
-    axes = _body(flight, near(entity))
+    axes = _body(flight, "/axis" if on_sphere(entity) else "/sail" if near(entity) else "/world")
     return axes @ flight.truth.spin if "/body/shape" in entity or "/body/tether" in entity else axes
 
 
 @cache
-def _body(flight, close: bool) -> np.ndarray:
+def _body(flight, view: str) -> np.ndarray:
     axes = np.array([turn(q) for q in flight.truth.quaternion])
-    return np.stack([seen(flight, "/sail" if close else "/world", axes[:, :, k]) for k in range(3)], -1)
+    return np.stack([seen(flight, view, axes[:, :, k]) for k in range(3)], -1)
 
 
 def home(flight, entity: str) -> np.ndarray:
     """(n, 3) where the craft is drawn."""
-    return np.zeros((len(flight.truth), 3)) if near(entity) else flight.truth.place / flight.truth.length
+    there = near(entity) or on_sphere(entity)
+    return np.zeros((len(flight.truth), 3)) if there else flight.truth.place / flight.truth.length
 
 
 def outward(flight, entity: str) -> np.ndarray:

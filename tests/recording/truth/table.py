@@ -14,6 +14,7 @@ from functools import cache, partial
 
 from . import (
     arrival,
+    axis,
     close_up,
     craft,
     earth,
@@ -256,6 +257,25 @@ CLOSE_UP = (
     Claim("/sail/clock/name", POINT, "/attitude clock_rad", NEAR, "in words", close_up.clock_word),
 )
 
+SPHERE = "inertial, of the rows themselves"
+AXIS = (
+    Claim("/axis", "ViewCoordinates", "right-handed, z up", SPHERE, "1", system.right_handed),
+    Claim("/axis/globe", MESH, "nothing: a sphere", SPHERE, "0.985", axis.globe),
+    Claim("/axis/grid", LINE, "parallels and meridians every 30 degrees", SPHERE, "1", axis.grid),
+    Claim("/axis/pan", MOVE, "the light's direction", SPHERE, "1", axis.pan),
+    Claim("/axis/body", MOVE, "/attitude quaternion", SPHERE, "1", craft.body_pose),
+    *(row for row in of_craft("/axis") if row.pattern.endswith(("/shape", "/film_lit", "/film_dark", "/bus"))),
+    Claim("/axis/trace/*", f"{LINE} {POINT}", "/attitude quaternion", SPHERE, "1", axis.trace),
+    Claim("/axis/now", ARROW, "/attitude quaternion", SPHERE, "1", axis.now),
+    Claim("/axis/light", ARROW, "/state position_m, the Sun", SPHERE, "1.22", axis.light),
+    Claim("/axis/light_way", LINE, "/state position_m, the Sun", SPHERE, "1", axis.light_way),
+    Claim("/axis/momentum", ARROW, "/attitude angular_momentum_N_m_s", SPHERE, "1.36", axis.momentum),
+    *(
+        Claim(f"/axis/{name}_name", POINT, "the arrow's tip", SPHERE, "0.13 beyond", partial(axis.name, arrow=name))
+        for name in ("now", "light", "momentum")
+    ),
+)
+
 SWUNG = "Measurements Scalars SeriesLines"
 NAMED = {
     "distance": ("/state, /elements", plots.distance),
@@ -351,7 +371,7 @@ BESIDES = tuple(
     if not row.pattern.endswith(("/dot", "/plume", "/panels", "/nozzle", "/hub", "sheath"))
     and not row.pattern.endswith(("/tethers", "/rim", "/disc"))
 )
-TABLE = (*SYSTEM, *EARTH, *LOW, *CRAFTS, *CLOSE_UP, *ENSEMBLES, *TOGETHER, *BESIDES, *CURVES)
+TABLE = (*SYSTEM, *EARTH, *LOW, *CRAFTS, *CLOSE_UP, *AXIS, *ENSEMBLES, *TOGETHER, *BESIDES, *CURVES)
 NUMBERS = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/approximation", "/ensemble", "/events")
 NUMBERS = (
     *NUMBERS,

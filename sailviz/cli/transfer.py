@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,15 @@ import click
 
 from sailviz.cli.numbers import Number
 from sailviz.cli.outputs import file_at
-from sailviz.cli.shared import BAD_INPUT, EXPECTATION_FAILED, progress_bar, say_if_compiling, tell
+from sailviz.cli.shared import (
+    BAD_INPUT,
+    EXPECTATION_FAILED,
+    INTERRUPTED,
+    progress_bar,
+    say_if_compiling,
+    tell,
+    time_limit_option,
+)
 from sailviz.cli.transfer_in_words import summary, words
 from sailviz.cli.transfer_question import Question, question_options
 from sailviz.constants import DAY
@@ -20,6 +28,7 @@ from sailviz.errors import OutputError
 from sailviz.files import write_text
 
 if TYPE_CHECKING:
+    from sailviz.design.minimum_time.effort import Effort
     from sailviz.transfers import Place
 
 TABLE_MM_S2 = (2.0, 1.5, 1.0, 0.75, 0.5, 0.35, 0.25)
@@ -55,6 +64,7 @@ TABLE_MM_S2 = (2.0, 1.5, 1.0, 0.75, 0.5, 0.35, 0.25)
     show_default=True,
     help="How the scene steers: from initial costates, or by a table of attitudes.",
 )
+@time_limit_option("Stop after so much wall time, with the best flight found until then, marked.")
 @click.option("--json", "as_json", is_flag=True, help="Print what was found for a script to read.")
 @click.option("-q", "--quiet", is_flag=True, help="Print the flight time in days only.")
 def transfer(
@@ -65,6 +75,7 @@ def transfer(
     as_table: bool,
     output: str | None,
     form: str,
+    time_limit: float | None,
     as_json: bool,
     quiet: bool,
     **options: Any,
@@ -72,7 +83,8 @@ def transfer(
     """Find the fastest flight of a sail from one orbit to another, and how it must be steered.
 
     FROM and TO are planets, mercury to neptune, or small bodies such as ceres, apophis or kamooalewa; by default their
-    orbits are circles in one plane. Exit code 1 where no flight was found; the nearest one is then told.
+    orbits are circles in one plane. Exit code 1 where no flight was found, or none can be: the message says which, and
+    what came nearest. Ctrl-C keeps the best flight found until then, marked, and -o writes it; exit code 130.
     """
     sails = sails or ("ideal",)
     asked = Question.taken(options)
@@ -85,13 +97,13 @@ def transfer(
         say_if_compiling(quiet or as_json)
         start, aim = place(origin), asked.aim(target)
         if as_table:
-            _table(start, aim, sails, quiet, as_json)
+            _table(start, aim, sails, time_limit, quiet, as_json)
             return
-        with _progress(f"{start.name} to {aim.name}", quiet or as_json) as progress:
+        with _effort(f"{start.name} to {aim.name}", time_limit, quiet or as_json) as effort:
             found = find(
                 start, aim, sails[0], acceleration * 1e-3,
                 orbits=asked.orbits, departure=asked.departure, starts=asked.starts, dates=asked.dates,
-                progress=progress,
+                effort=effort,
             )  # fmt: skip
         text = scene_of(found, form) if output is not None and found.flight.feasible else None
     except (ValueError, OutputError) as error:
@@ -101,42 +113,73 @@ def transfer(
         click.echo(json.dumps(summary(found), indent=2))
     elif quiet and found.flight.feasible:
         click.echo(f"{found.flight.time / DAY:.6f}")
+        if found.flight.ending.mark:
+            tell(found.flight.ending.mark.strip())
     else:
         click.echo("\n".join(words(found)))
-    if not found.flight.feasible:
-        raise click.exceptions.Exit(EXPECTATION_FAILED)
     if output is not None and text is not None:
         _write(output, text, quiet or as_json)
+    _end(effort, EXPECTATION_FAILED if not found.flight.feasible else 0)
 
 
 @contextmanager
-def _progress(title: str, quiet: bool) -> Iterator[Callable[[float, str], None] | None]:
+def _effort(title: str, time_limit: float | None, quiet: bool) -> Iterator[Effort]:
+    """What a search may take, with a bar; Ctrl-C ends it with the best so far."""
+    from sailviz.design.minimum_time.effort import Effort
+
     with progress_bar(title, quiet) as bar:
-        yield None if bar is None else lambda share, words: bar(min(max(share, 0.0), 1.0))
+        effort = Effort(time_limit, None if bar is None else lambda share, words: bar(share))
+        with effort.listening():
+            yield effort
 
 
-def _table(start: Place, end: Place, sails: Sequence[str], quiet: bool, as_json: bool) -> None:
+def _end(effort: Effort, code: int) -> None:
+    """End the command with the code, or with that of Ctrl-C where it was heard."""
+    from sailviz.design.minimum_time.effort import INTERRUPTED as HEARD
+
+    code = INTERRUPTED if effort.stopped == HEARD else code
+    if code:
+        raise click.exceptions.Exit(code)
+
+
+def _table(
+    start: Place, end: Place, sails: Sequence[str], time_limit: float | None, quiet: bool, as_json: bool
+) -> None:
     """Flight times over the acceleration, one column per sail."""
     import numpy as np
 
+    from sailviz.design.minimum_time.effort import FOUND, STOPPED
     from sailviz.design.minimum_time.state_costate import canonical_sail
     from sailviz.transfers import flight_times
 
     for sail in sails:
         canonical_sail(sail, 1e-3)  # ValueError for what is no sail, before the work begins
-    with _progress(f"{start.name} to {end.name}", quiet or as_json) as progress:
-        found = flight_times(start, end, sails, np.array(TABLE_MM_S2) * 1e-3, progress=progress)
+    with _effort(f"{start.name} to {end.name}", time_limit, quiet or as_json) as effort:
+        found = flight_times(start, end, sails, np.array(TABLE_MM_S2) * 1e-3, effort=effort)
     if as_json:
         days = [[None if np.isnan(x) else x / DAY for x in row] for row in found.time]
-        values = {"characteristic_acceleration_mm_s2": TABLE_MM_S2, "sails": sails, "time_d": days}
+        values = {
+            "characteristic_acceleration_mm_s2": TABLE_MM_S2,
+            "sails": sails,
+            "time_d": days,
+            "outcome": found.outcome.tolist(),
+            "stopped": effort.stopped or None,
+        }
         click.echo(json.dumps(values, indent=2))
+        _end(effort, 0)
         return
     click.echo(f"{start.name} to {end.name}, between circles in one plane: days (revolutions), best found")
     width = max(22, *(len(sail) + 2 for sail in sails))
     click.echo("  mm/s²" + "".join(sail.rjust(width) for sail in sails))
-    for a, times, turns in zip(TABLE_MM_S2, found.time, found.revolutions, strict=True):
-        cells = ["none found" if np.isnan(t) else f"{t / DAY:.4f} ({n:.3f})" for t, n in zip(times, turns, strict=True)]
+    for i, a in enumerate(TABLE_MM_S2):
+        cells = [
+            f"{t / DAY:.4f} ({n:.3f})" if outcome == FOUND else outcome
+            for t, n, outcome in zip(found.time[i], found.revolutions[i], found.outcome[i], strict=True)
+        ]
         click.echo(f"{a:7.2f}" + "".join(cell.rjust(width) for cell in cells))
+    if effort.stopped:
+        click.echo(f"{STOPPED[effort.stopped]} after {effort.seconds:.1f} s.")
+    _end(effort, 0)
 
 
 def _write(output: str, text: str, quiet: bool) -> None:

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from sailviz.design.minimum_time import Transfer
+    from sailviz.design.minimum_time.effort import Ending
     from sailviz.design.minimum_time.planet_rendezvous import Window
     from sailviz.transfers import Solution
 
@@ -35,7 +36,7 @@ def words(found: Solution) -> Iterator[str]:
     yield f"{found.origin.name} to {found.target.name}, {ways[found.kind]}"
     yield f"{craft}, {flight.characteristic_acceleration * 1e3:g} mm/s² at 1 au"
     if not flight.feasible:
-        yield f"  No flight found: {flight.reason.removeprefix('no flight found: ')}."
+        yield from _without_an_answer(flight.reason, flight.ending)
         return
     rows = [("flight time", f"{flight.time / DAY:.6f} d, {flight.revolutions:.4f} revolutions about the Sun")]
     if isinstance(flight, Rendezvous):
@@ -100,6 +101,23 @@ def _best_dates(window: Window, slope: float) -> Iterator[str]:
         yield f"  Best nearby only: {', '.join(others)}."
 
 
+def _without_an_answer(reason: str, ending: Ending) -> Iterator[str]:
+    """Why there is no flight: that there can be none, or what a search without success has tried."""
+    from sailviz.design.minimum_time.effort import IMPOSSIBLE, STOPPED
+
+    reason = reason.removeprefix("no flight found: ")
+    if ending.outcome == IMPOSSIBLE:
+        yield f"  Impossible: {reason}."
+        return
+    yield f"  Not found by this search, which proves nothing: {reason}."
+    if ending.stopped:
+        yield f"  {STOPPED[ending.stopped]} after {ending.seconds:.1f} s."
+    if ending.tried:
+        yield f"  Tried: {ending.tried}, in {ending.seconds:.1f} s."
+    if ending.advice:
+        yield f"  To change: {'; '.join(ending.advice)}."
+
+
 def _unit(found: Solution) -> float:
     """The canonical unit of time, d."""
     from sailviz.design.minimum_time.state_costate import TIME_UNIT
@@ -126,6 +144,12 @@ def summary(found: Solution) -> dict[str, Any]:
         "sail": flight.device,
         "characteristic_acceleration_mm_s2": flight.characteristic_acceleration * 1e3,
         "found": flight.feasible,
+        "outcome": found.outcome,
+        "stopped": flight.ending.stopped or None,
+        "tried": flight.ending.tried,
+        "seconds": flight.ending.seconds,
+        "nearest": flight.ending.nearest,
+        "advice": list(flight.ending.advice),
         "claim": flight.claim,
         "time_d": _known(flight.time / DAY),
         "revolutions": _known(flight.revolutions),

@@ -138,7 +138,7 @@ def _about(flight: Flight, it: replay.Solved, craft: str, ways: str, form: str) 
     a_c = f"{it.characteristic_acceleration * 1e3:g} mm/s²"
     return (
         f"**{craft}** of {a_c}, steered {ways} by {how} in **{it.time / DAY:.4f} d** and {flight.revolutions:.3f} "
-        f"revolutions: the best found, residual {flight.residual:.0e}."
+        f"revolutions: the best found, residual {flight.residual:.0e}.{flight.ending.mark}"
     )
 
 

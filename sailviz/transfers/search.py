@@ -9,13 +9,14 @@ The search is that of `design.minimum_time`; here are the orbits of the planets 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from sailviz.design.minimum_time.circles import circle_to_circle
+from sailviz.design.minimum_time.effort import NOT_FOUND, Effort, Progress, Stopped
 from sailviz.design.minimum_time.orbits import STARTS, OrbitTransfer, orbit_to_orbit
 from sailviz.design.minimum_time.planar_transfer import Transfer
 from sailviz.design.minimum_time.planet_rendezvous import DATES, Date, Rendezvous, rendezvous
@@ -27,8 +28,6 @@ from sailviz.words import nearest
 PLACES = names()
 SAILS = (*FILMS, *ELECTRIC_SAILS)
 SAME_CIRCLE = 1e-4  # relative difference of two radii
-
-Progress = Callable[[float, str], None]
 
 
 @dataclass(frozen=True)
@@ -43,6 +42,12 @@ class Solution:
     flight: Transfer | OrbitTransfer | Rendezvous
     notes: tuple[str, ...] = ()
 
+    @property
+    def outcome(self) -> str:
+        """ "found", "not found" by this search, which proves nothing, or "impossible", which is proven: `flight.ending`
+        says what was tried, what came nearest and what to change."""
+        return self.flight.ending.outcome
+
 
 def find(
     origin: str | Place,
@@ -55,31 +60,36 @@ def find(
     starts: int | None = None,
     dates: int | None = None,
     progress: Progress | None = None,
+    time_limit: float | None = None,
+    effort: Effort | None = None,
 ) -> Solution:
     """The fastest flight found from one place to another; nothing need be guessed.
 
     origin, target : names in PLACES, or a Place. device : a name in SAILS or a Film, characteristic_acceleration m/s2.
     Between circles at the mean distances; with orbits=True, or to an inclined circle, between the orbits in space with
     free anomalies; with departure, a date or (first, last) as datetime64 or text, from planet to planet. starts, dates
-    : of `orbit_to_orbit` and `rendezvous`. ValueError for what is no place, sail or date; an unreachable target gives
-    a flight that is not feasible and says why.
+    : of `orbit_to_orbit` and `rendezvous`. progress(share, words) is called now and then; after time_limit s of wall
+    time the best so far is the answer, marked; effort : an `Effort` instead of both, which may listen to Ctrl-C.
+    ValueError for what is no place, sail or date; where no flight was found, `Solution.outcome` says whether there is
+    none.
     """
+    effort = Effort.of(effort, progress, time_limit)
     begin, end = (place(x) if isinstance(x, str) else x for x in (origin, target))
     if isinstance(device, str) and device not in SAILS:
         raise ValueError(f'there is no sail called "{device}". {nearest(device, SAILS)}')
     a_c = characteristic_acceleration
     if departure is not None:
-        return _between_bodies(begin, end, device, a_c, departure, dates, progress)
+        return _between_bodies(begin, end, device, a_c, departure, dates, effort)
     if orbits or (end.circle and end.orbit.inclination):
         if not orbits:
             begin = circle(begin.radius, name=begin.name)
         count = STARTS if starts is None else starts
-        found = orbit_to_orbit(begin.orbit, end.orbit, device, a_c, starts=count, progress=progress)
+        found = orbit_to_orbit(begin.orbit, end.orbit, device, a_c, starts=count, effort=effort)
         return Solution("orbits", begin, end, found)
     begin, end = (circle(x.radius, name=x.name) for x in (begin, end))
     if abs(end.radius / begin.radius - 1) < SAME_CIRCLE:
         raise ValueError(f"{end.name} is where {begin.name} is: between the two circles there is nothing to fly")
-    return Solution("circles", begin, end, circle_to_circle(begin.radius, end.radius, device, a_c, progress=progress))
+    return Solution("circles", begin, end, circle_to_circle(begin.radius, end.radius, device, a_c, effort=effort))
 
 
 def _between_bodies(
@@ -89,7 +99,7 @@ def _between_bodies(
     characteristic_acceleration: float,
     departure: Date | tuple[Date, Date],
     dates: int | None,
-    progress: Progress | None,
+    effort: Effort,
 ) -> Solution:
     if origin.body is None or target.body is None:
         circle = origin if origin.body is None else target
@@ -105,7 +115,7 @@ def _between_bodies(
             characteristic_acceleration,
             origin=origin.body,
             dates=DATES if dates is None else dates,
-            progress=progress,
+            effort=effort,
         )
     except ValueError as error:
         if "datetime" in str(error).lower():
@@ -120,15 +130,19 @@ def _between_bodies(
     return Solution("rendezvous", origin, target, found, tuple(notes))
 
 
+NOT_SEARCHED = "not searched"  # a flight of a table whose time was over before
+
+
 @dataclass(frozen=True)
 class FlightTimes:
-    """time (n, k) s over characteristic_acceleration (n,) m/s2 for k devices, NaN where no flight was found;
-    revolutions (n, k)."""
+    """time (n, k) s over characteristic_acceleration (n,) m/s2 for k devices, NaN where there is none; revolutions
+    (n, k); outcome (n, k): that of each search, or NOT_SEARCHED."""
 
     characteristic_acceleration: np.ndarray
     devices: tuple[str, ...]
     time: np.ndarray
     revolutions: np.ndarray
+    outcome: np.ndarray
 
 
 def flight_times(
@@ -138,15 +152,25 @@ def flight_times(
     characteristic_acceleration: npt.ArrayLike,
     *,
     progress: Progress | None = None,
+    time_limit: float | None = None,
+    effort: Effort | None = None,
 ) -> FlightTimes:
-    """Flight times between circles, each from a search of its own. devices : names; acceleration (n,) m/s2."""
+    """Flight times between circles, each from a search of its own. devices : names; acceleration (n,) m/s2. progress,
+    time_limit, effort : as of `find`, for all of them together; a search that it ends counts as not searched, unless it
+    had found a flight."""
+    effort = Effort.of(effort, progress, time_limit)
     a_c = np.asarray(characteristic_acceleration, dtype=float)
     time, turns = (np.full((len(a_c), len(devices)), np.nan) for _ in range(2))
-    for k, device in enumerate(devices):
-        for i, a in enumerate(a_c):
-            done = (k * len(a_c) + i) / time.size
-            if progress is not None:
-                progress(done, f"{device}, {a * 1e3:g} mm/s²")
-            flight = find(origin, target, device, float(a)).flight
-            time[i, k], turns[i, k] = flight.time, flight.revolutions
-    return FlightTimes(a_c, tuple(devices), time, turns)
+    outcome = np.full(time.shape, NOT_SEARCHED, dtype=object)
+    with effort.stoppable():
+        for k, device in enumerate(devices):
+            for i, a in enumerate(a_c):
+                effort.check()
+                done = (k * len(a_c) + i) / time.size
+                effort.report(done, f"{device}, {a * 1e3:g} mm/s²")
+                found = find(origin, target, device, float(a), effort=effort.part(done, done + 1 / time.size))
+                if found.outcome == NOT_FOUND and effort.stopped:
+                    raise Stopped
+                outcome[i, k] = found.outcome
+                time[i, k], turns[i, k] = found.flight.time, found.flight.revolutions
+    return FlightTimes(a_c, tuple(devices), time, turns, outcome)

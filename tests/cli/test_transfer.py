@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 
 import pytest
 from click.testing import CliRunner
 
 import sailviz
 from sailviz.cli import main
+from sailviz.cli import transfer as command
+from sailviz.design.minimum_time import search
+from sailviz.design.minimum_time.effort import Effort
 
 
 def ask(*words):
@@ -30,7 +35,47 @@ def test_the_shell_answers_and_writes_a_scene(tmp_path):
 def test_an_unreachable_target_is_told_and_nothing_is_written():
     said = ask("earth", "--radius-au", 0.003)
     assert said.exit_code == 1, said.output
-    assert "No flight found: the target lies inside the Sun." in said.output
+    assert "Impossible: the target lies inside the Sun." in said.output
+    assert json.loads(ask("earth", "--radius-au", 0.003, "--json").stdout)["outcome"] == "impossible"
+
+
+def test_a_search_without_time_enough_says_what_it_tried_and_what_to_change():
+    said = ask("earth", "mercury", "-a", 0.3, "--time-limit", 1e-3)
+    assert said.exit_code == 1, said.output
+    assert "Not found by this search, which proves nothing" in said.output
+    assert "stopped by its time limit" in said.output
+    assert "give the search more time" in said.output
+    summary = json.loads(ask("earth", "mercury", "--time-limit", 1e-3, "--json").stdout)
+    assert (summary["outcome"], summary["stopped"], summary["time_d"]) == ("not found", "time limit", None)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to one process")
+def test_ctrl_c_keeps_the_best_flight_so_far_and_writes_it_with_a_mark(tmp_path, monkeypatch):
+    """Pressed once four starts have been finished; five would have to agree before the search ends by itself."""
+    pressed = []
+
+    def count(effort, what, n=1):
+        if "finished" in what and not pressed:
+            pressed.append(os.kill(os.getpid(), signal.SIGINT))
+
+    monkeypatch.setattr(Effort, "count", count)
+    monkeypatch.setattr(search, "AGREE", 5)
+    file = tmp_path / "mars.toml"
+    said = ask("earth", "mars", "-a", 1, "-o", file)
+    assert said.exit_code == 130, said.output
+    assert "407.723742 d" in said.output
+    assert "The search was interrupted: more time may find a faster flight." in said.output
+    assert "The search was interrupted" in sailviz.load_scene(file).about
+
+
+def test_a_table_tells_what_was_not_searched_from_what_was_not_found(monkeypatch):
+    monkeypatch.setattr(command, "TABLE_MM_S2", (2.0, 1.0))
+    monkeypatch.setattr(Effort, "count", lambda effort, what, n=1: effort.end("time limit") if "fin" in what else None)
+    said = ask("earth", "mars", "--table", "--sail", "ideal", "--sail", "jpl-2015")
+    assert said.exit_code == 0, said.output
+    assert said.output.count("not searched") == 3
+    assert "stopped by its time limit" in said.output
+    assert ask("earth", "--radius-au", 0.004, "--table").output.count("impossible") == 2
 
 
 @pytest.mark.parametrize(

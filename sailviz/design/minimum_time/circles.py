@@ -124,7 +124,8 @@ def circle_to_circle(
         advice.append(f"give the search more time than the {effort.seconds:.3g} s it had")
     nearest = "; ".join(told or [_nearest_screened(found, initial_radius)])
     days = LAST.spans * guess * time_unit(initial_radius) / DAY
-    reason = f"no transfer was found within {days:.0f} d; {nearest}"
+    where = "before the search was stopped" if effort.stopped else f"within {days:.0f} d"
+    reason = f"no transfer was found {where}; {nearest}"
     ending = effort.not_found(nearest, *advice)
     return no_transfer(device, characteristic_acceleration, initial_radius, reason, ending)
 

@@ -151,7 +151,7 @@ class Meeting:
     def fresh(self, departure: float, planar: PlanarGuess) -> list[Unknowns]:
         """Solutions for a departure in s after the epoch, from nothing; sorted by flight time."""
         origin, target = self.orbit(self.origin, departure), self.orbit(self.target, departure)
-        problem = OrbitProblem(origin, target, self.sail)
+        problem = OrbitProblem(origin, target, self.sail, self.effort)
         (here,) = self.state(self.origin, departure)
         guess = problem.embedded(planar, origin.anomaly(here[POSITION]))
         x, residual = problem.search(guess, self.smoothing)

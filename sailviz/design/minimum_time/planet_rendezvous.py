@@ -126,8 +126,8 @@ def rendezvous(
     length = float((last - first) / np.timedelta64(1, "ns")) * 1e-9
     try:
         planar = _planar(asked)
-    except NoGuess as reason:
-        return _nothing(asked, first, str(reason))
+    except NoGuess as none:
+        return _nothing(asked, first, str(none), none.ending)
     if length > 0:
         return _best_of_window(asked, planar, length, dates, workers)
     found: list[Unknowns] = []
@@ -176,7 +176,8 @@ def _planar(asked: Asked) -> PlanarGuess:
     """The flight between circles of the bodies' mean distances."""
     meeting = asked.meeting
     origin, target = meeting.orbit(meeting.origin, 0.0), meeting.orbit(meeting.target, 0.0)
-    return planar_guess(OrbitProblem(origin, target, meeting.sail), asked.device, asked.characteristic_acceleration)
+    problem = OrbitProblem(origin, target, meeting.sail, meeting.effort)
+    return planar_guess(problem, asked.device, asked.characteristic_acceleration)
 
 
 def _best_of_window(asked: Asked, planar: PlanarGuess, length: float, dates: int, workers: int) -> Rendezvous:
@@ -293,7 +294,7 @@ def _result(asked: Asked, unknowns: Unknowns, local: int, window: Window | None 
         hamiltonian=flight.hamiltonian / ends.arrival,
         hamiltonian_drift=flight.drift / ends.arrival,
         solutions=local,
-        claim=f"best found over {where}; a faster flight is not excluded",
+        claim=f"best found over {where}; a faster flight is not excluded.{effort.found().mark}",
         feasible=True,
         reason="",
         position=start[POSITION] * AU,
@@ -306,10 +307,19 @@ def _result(asked: Asked, unknowns: Unknowns, local: int, window: Window | None 
     )
 
 
-def _nothing(asked: Asked, first: np.datetime64, reason: str) -> Rendezvous:
+def _nothing(asked: Asked, first: np.datetime64, reason: str, ending: Ending | None = None) -> Rendezvous:
+    """The result where there is no flight; ending : of a search before, by default of this one."""
     (state,) = asked.meeting.state(asked.meeting.origin, 0.0)
     return Rendezvous(
         np.nan, first, np.datetime64("NaT"), np.nan, np.full(6, np.nan), np.nan, np.nan, np.nan, 0, reason,
         False, reason, state[POSITION] * AU, state[VELOCITY] * SPEED_UNIT, asked.device,
-        asked.characteristic_acceleration, ending=asked.meeting.effort.not_found(),
+        asked.characteristic_acceleration, ending=ending or _without_success(asked.meeting.effort),
     )  # fmt: skip
+
+
+def _without_success(effort: Effort) -> Ending:
+    """How a search ended that found no flight."""
+    advice = ["take a higher characteristic acceleration", "leave on another date, or on the best of a window"]
+    if effort.stopped:
+        advice.append(f"give the search more time than the {effort.seconds:.3g} s it had")
+    return effort.not_found("", *advice)

@@ -98,6 +98,23 @@ def observe_primer(time, states, parameters):
     return out, support
 
 
+def observe_throttle(time, parameters):
+    """Throttle (n,) at times (n,) s of a law that flies arcs."""
+    out = np.empty(len(time))
+    _observe_throttle(np.ascontiguousarray(time), parameters, out)
+    return out
+
+
+@entry("d1 r1 D1", PARAMETERS)
+def _observe_throttle(time, parameters, out):
+    """`observe_throttle` into out (n,)."""
+    p = parameters[0]
+    tables = array_at(p.places.address, p.places.end)
+    for i in range(len(time)):
+        out[i] = arc_throttle(time[i], p, tables)
+    return 0
+
+
 @entry("d1 d2 r1 D2 D1", PARAMETERS)
 def _observe(time, states, parameters, out, support):
     """`observe_primer` without its arrays made."""

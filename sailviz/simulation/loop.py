@@ -72,7 +72,8 @@ def simulate_blocks(
 def _blocks(
     p: Plan, block_rows: int, progress: Callable[[float], None], drawn: bool, patience: Patience, time_limit: float
 ) -> Iterator[Run]:
-    output = OutputTimes(p.scene.propagation)
+    begins = [phase.start for phase in p.phases]
+    output = OutputTimes(p.scene.propagation, also=begins)
     ensembles = _ensembles(p, output) if drawn or any(item.ensemble for item in p.scene.expect) else ()
     spreads = _spreads(p)
     if spreads and output.rows > block_rows:  # a flight without rows tells where it ends: they can be streamed then
@@ -130,7 +131,7 @@ def _spread(
     planned, end = output.end, stepping.time(state)
     ended = bool(ending(p, state, int(state.counter[stepping.STATUS]))) and 0.0 < end < planned
     end = end if ended else planned
-    return OutputTimes(p.scene.propagation, end), lambda share: progress(
+    return OutputTimes(p.scene.propagation, end, [phase.start for phase in p.phases]), lambda share: progress(
         done + (1.0 - done) * min(share * planned / end, 1.0)
     )
 

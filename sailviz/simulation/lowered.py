@@ -13,7 +13,7 @@ from sailviz.propulsion.solar_sail import Film
 from sailviz.steering import attitude, by_light
 
 if TYPE_CHECKING:
-    from sailviz.run.arrays import Body
+    from sailviz.run.arrays import Body, Phase
     from sailviz.scene.loading import Scene
 
 Array = np.ndarray[Any, Any]
@@ -54,6 +54,7 @@ class LoweredSteering(NamedTuple):
     steer_as: tuple[int, Sequence[float]] = (0, ())  # the sail of a primer law: id and parameters
     primer_kind: int = 0
     breaks: tuple[float, ...] = ()  # s, where its thrust jumps
+    phases: tuple[Phase, ...] = ()  # what it flies one after the other
     by_light: by_light.Parameters = by_light.Parameters()  # of a law that counts from the light
 
 

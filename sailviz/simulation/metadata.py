@@ -67,6 +67,7 @@ def setting_of(p: Plan, planets, rows, ensembles=(), measure=True) -> Setting:
         magnetopause=None if p.sky is None else magnetopause(p.model.named.magnetosphere),
         shells=_shells(p),
         ensembles=ensembles,
+        phases=p.phases,
     )
 
 

@@ -13,13 +13,16 @@ from sailviz.design.minimum_time.replay import Solved, from_planar, primer_histo
 from sailviz.design.minimum_time.singular_arcs import Arc
 from sailviz.errors import Fault, SceneError
 from sailviz.propagate.primer_callback import ARC_KINDS
+from sailviz.run.arrays import Phase
 from sailviz.steering import attitude
 from sailviz.steering.optimal import optimal_pitch
+
+NAMES = {"thrust": "full thrust", "coast": "coast", "singular": "partial thrust"}  # of phases, by the kind of arc
 
 
 def primer_table(scene, position, velocity, device, characteristic_acceleration, begin=0.0):
     """Rows (n, 7): time s, primer (3), its rate (3), inertial, from `begin` s to the end of the run, or of its arcs;
-    (time s, "thrust on" | "thrust off") of every switch; and times, s, at which the thrust jumps otherwise.
+    (time s, word) of every switch; times, s, at which the thrust jumps otherwise; and the arcs as phases of a flight.
 
     Of a flight in arcs the rows that `primer_callback` reads of them stand first.
 
@@ -42,8 +45,10 @@ def primer_table(scene, position, velocity, device, characteristic_acceleration,
         raise SceneError([Fault("steering.costates", f"{error}.")], scene.source) from None
     rows = np.column_stack([begin + found.time, found.primer, found.rate])
     if not arcs:
-        return rows, _switches(found, device, begin), ()
-    return np.vstack([_arc_rows(arcs, found, begin), rows]), _arc_switches(arcs, begin), _arc_breaks(arcs, begin)
+        return rows, _switches(found, device, begin), (), ()
+    phases = _phases(arcs, found, begin)
+    switches = _arc_switches(arcs, phases, begin)
+    return np.vstack([_arc_rows(arcs, found, begin), rows]), switches, _arc_breaks(arcs, begin), phases
 
 
 def _arcs(given):
@@ -52,10 +57,25 @@ def _arcs(given):
     return tuple(Arc(arc.kind, a, b) for arc, (a, b) in zip(given, pairwise(edges), strict=True))
 
 
-def _arc_switches(arcs, begin):
-    """(time s, word) where thrust begins and ends, whatever share of it there is between."""
+def _phases(arcs, found, begin):
+    """The arcs as phases, with what is between the lowest and the highest throttle."""
+    throttle = iter(found.throttle)
+    phases = []
+    for arc in arcs:
+        words = ""
+        if arc.kind == "singular":
+            _, share = next(throttle)
+            words = f"throttle {share.min():.2f}-{share.max():.2f}"
+        phases.append(Phase(NAMES[arc.kind], begin + arc.start, begin + arc.end, words))
+    return tuple(phases)
+
+
+def _arc_switches(arcs, phases, begin):
+    """(time s, word) where arcs end, and where thrust begins and ends, whatever share of it there is between."""
+    ends = [(phase.end, f"end of {phase.name}") for phase in phases[:-1]]
     pairs = [(a, b) for a, b in pairwise(arcs) if (a.kind == "coast") != (b.kind == "coast")]
-    return tuple((begin + b.start, "thrust off" if b.kind == "coast" else "thrust on") for _, b in pairs)
+    thrust = [(begin + b.start, "thrust off" if b.kind == "coast" else "thrust on") for _, b in pairs]
+    return (*ends, *thrust)
 
 
 def _arc_rows(arcs, found, begin):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from sailviz.scene.sections import Propagation
@@ -14,10 +16,10 @@ class OutputTimes:
     """Times of all rows of a run, s: even, or closer in some windows. Even ones are computed as they are asked for.
 
     end : of what is flown, s, where that is known to be less than was planned. An output_interval that the scene gives
-    is kept; a number of outputs is spread over what is flown.
+    is kept; a number of outputs is spread over what is flown. also : further times, s, that have a row.
     """
 
-    def __init__(self, run: Propagation, end: float | None = None) -> None:
+    def __init__(self, run: Propagation, end: float | None = None, also: Sequence[float] = ()) -> None:
         self.run, self.end = run, run.duration if end is None else end
         self.rows, self.spacing = self._grid()
         self.uneven: np.ndarray | None = None
@@ -26,6 +28,12 @@ class OutputTimes:
             windows = [np.arange(w.start, w.end + 0.5 * w.output_interval, w.output_interval) for w in run.dense]
             inside = [window[window <= self.end] for window in windows] if self.end < run.duration else windows
             self.uneven = np.unique(np.minimum(np.concatenate([even, *inside]), self.end))
+            self.rows = len(self.uneven)
+        wanted = [time for time in also if time < self.end]
+        if wanted:
+            even = self.between(0, self.rows)
+            apart = np.min(np.abs(even[:, None] - np.array(wanted)), axis=1) > CLOSEST
+            self.uneven = np.union1d(even[apart], wanted)
             self.rows = len(self.uneven)
 
     def _grid(self) -> tuple[int, float]:

@@ -17,7 +17,7 @@ from sailviz.propagate.callbacks import user_address
 from sailviz.propagate.choice import DOP853, TURNING, Choice, choose
 from sailviz.propagate.events import Watch, watch
 from sailviz.propagate.voltage_callback import R_REF, U_REF, WANTED, voltage_callback
-from sailviz.run.arrays import Body
+from sailviz.run.arrays import Body, Phase
 from sailviz.scene.device import DistanceControl, SolarSail, control_of
 from sailviz.scene.film import ages
 from sailviz.scene.loading import Scene
@@ -79,6 +79,7 @@ class Plan:
     sky: SceneSky | None  # None where only the central body and its own light matter
     beside: list[BesideDevice]  # what pushes beside the first device
     keep: tuple[object, ...]  # compiled user functions must live as long as the plan
+    phases: tuple[Phase, ...]  # what its steering flies one after the other
     turning: TurningPlan | None  # of a craft whose attitude has a motion of its own
     identity: str
     begin: float  # s
@@ -192,6 +193,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         sky,
         beside,
         keep,
+        steered.phases,
         begun,
         identity_of(whole, steering=steering, force=force, shape=shape_facts(whole)),
         begin,

@@ -17,7 +17,7 @@ from sailviz.constants import AU, MU_SUN
 from sailviz.design.displaced.holding import Track
 from sailviz.errors import Fault, SceneError
 from sailviz.propagate.dynamics import Model
-from sailviz.propagate.primer_callback import observe_primer, primer_steering
+from sailviz.propagate.primer_callback import observe_primer, observe_throttle, primer_steering
 from sailviz.propagate.sky_callback import observe_sky_primer
 from sailviz.propulsion import plasma_brake
 from sailviz.propulsion.devices import sail
@@ -160,13 +160,13 @@ def _optimal(steering: OptimalSteering, flight: Flight) -> LoweredSteering:
     from sailviz.simulation.optimal_steering import primer_table
 
     sail_of_law = steering.reckons_with or flight.sail
-    rows, switches, breaks = primer_table(
+    rows, switches, breaks, phases = primer_table(
         flight.scene, flight.position, flight.velocity, sail_of_law, flight.strength, flight.begin
     )
     # the times of another sail's switches are not quite those of this flight
     switches = switches if steering.reckons_with is None else ()
     lowered = LoweredSteering(
-        attitude.PRIMER, table=rows, interpolation=attitude.CUBIC, switches=switches, breaks=breaks
+        attitude.PRIMER, table=rows, interpolation=attitude.CUBIC, switches=switches, breaks=breaks, phases=phases
     )
     lowered = _towards_primer(steering, flight, lowered)
     return lowered if steering.arcs is None else lowered._replace(primer_kind=attitude.ARCS)
@@ -199,7 +199,10 @@ def _primer_columns(model: Model, time: Array, states: Array) -> Columns:
     """The primer's direction, and the thrust that the law expects along it as a share of the full one."""
     follows = observe_sky_primer if model.named.by_light.law == by_light.PRIMER else observe_primer
     direction, support = follows(time, states, model.parameters)
-    return {"primer_direction": direction, "switching_function": support}
+    columns = {"primer_direction": direction, "switching_function": support}
+    if model.parameters["primer"]["kind"][0] == attitude.ARCS:
+        columns["throttle"] = observe_throttle(time, model.parameters)
+    return columns
 
 
 def _smoothed(steering: SmoothedSteering, flight: Flight) -> LoweredSteering:

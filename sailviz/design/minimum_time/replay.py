@@ -140,7 +140,8 @@ def primer_history(solved: Replayable, *, error: float = 1e-10) -> PrimerHistory
     """
     arcs = _arcs_of(solved)
     bounds = [0.0, *(arc.end for arc in arcs[:-1]), solved.time]
-    pieces, throttle, worst = [], [], 0.0
+    pieces: list[list[np.ndarray]] = []
+    throttle, worst = [], 0.0
     if arcs:
         error = min(error, ARC_ERROR)
     for piece, (first, last) in enumerate(pairwise(bounds)):

@@ -117,6 +117,7 @@ COLOR_OF = (  # part of a column's name -> the quantity whose colour it has
     ("altitude", "altitude"),
     ("switching", "switch"),
 )
+BONUS = {"plasma_force_N_m": 1.2, "throttle": 2.0}  # of columns of the environment that say much
 RARE = ("switching_function",)  # only where the scene is about it
 
 
@@ -362,5 +363,5 @@ def environment_plot(name: str) -> Plot:
         (color,),
         lambda run: factor * run.environment[name][:, None],
         natural=1.0 if turns else -0.6,  # less than 1 µN m is of no weight, and may be rounding
-        bonus=1.2 if name == "plasma_force_N_m" else 0.6 if turns else 0.9,
+        bonus=BONUS.get(name, 0.6 if turns else 0.9),
     )

@@ -607,6 +607,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "spinning wheel": scene("body/e-sail-spin", propagation__outputs=41),
     "ageing": scene("body/ageing-mercury", propagation__outputs=41),
     "phases": scene("transfers/phased-solar-polar", propagation__outputs=181, phase__2__steering__pitch_deg=80),
+    "arcs": scene("transfers/earth-jupiter-electric-sail", propagation__outputs=121),
     "brake": scene("deorbit/gravity-gradient", propagation__duration_d=0.45, propagation__output_interval_min=7),
     "spinning": scene(
         "deorbit/foresail-1",

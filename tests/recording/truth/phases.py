@@ -6,18 +6,26 @@ import re
 
 import numpy as np
 
-from .facts import DAY
+from .facts import AU, DAY
 from .measure import hue
 
+ARCS = {"thrust": "full thrust", "coast": "coast", "singular": "partial thrust"}
 HUES = ["cyan", "yellow", "green", "violet", "pink"]  # of the phases, in their order
 
 
 def names(f) -> list[str]:
     """Of the phases that were flown, in their order; none in a flight without."""
+    steering = f.truth.resolved.get("steering") or {}
     listed = [phase["name"] for phase in f.truth.resolved.get("phase", [])]
+    listed = listed or [ARCS[arc["kind"]] for arc in steering.get("arcs") or []]
     over = {event.name for event in f.truth.recording.events}
     flown = [name for k, name in enumerate(listed) if k == 0 or f"end of {listed[k - 1]}" in over]
     return flown
+
+
+def hues(f) -> dict[str, str]:
+    """Of each name, the first time that it comes."""
+    return dict(zip(dict.fromkeys(names(f)), HUES, strict=False))
 
 
 def starts(f) -> list[float]:
@@ -39,7 +47,7 @@ def stretch_colors(f, entity):
         row, last = (int(np.searchsorted(f.truth.steps, k)) for k in (begin, step))
         packed = int(np.ravel(color)[0])
         shown = hue([(packed >> shift) & 255 for shift in (24, 16, 8)])
-        wanted = HUES[number[row] % len(HUES)]
+        wanted = hues(f)[names(f)[number[row]]]
         assert shown in (wanted, "blue" if wanted == "cyan" else wanted), f"row {row} is {shown}, not {wanted}"
         inside = [t for t in starts(f) if f.truth.time[row] < t < f.truth.time[last]]
         assert not inside, "a piece of the trail reaches over the switch"
@@ -50,8 +58,8 @@ def stretch_colors(f, entity):
 def lane(f, entity):
     """The phase of each row by its name, in its colour, from the row at its switch on."""
     values, labels = (f.picture.fixed(entity, f"StateConfiguration:{key}") for key in ("values", "labels"))
-    assert list(values) == list(labels) == names(f)
-    assert [hue(color) for color in f.picture.color(entity, "StateConfiguration:colors")] == HUES[: len(names(f))]
+    assert list(values) == list(labels) == list(hues(f))
+    assert [hue(color) for color in f.picture.color(entity, "StateConfiguration:colors")] == list(hues(f).values())
     for row, step in enumerate(f.truth.steps.tolist()):
         assert f.picture.at(entity, "StateChange:state", step)[0] == names(f)[of_rows(f)[row]], f"row {row}"
     ends = starts(f)[1:]
@@ -67,7 +75,10 @@ def told(f, text):
     said = re.findall(
         r"\*\*(\w+)\*\* (.*?)(?: from (day|hour) ([\d.]+))?(?: \(([^)]*)\))?(?:, (?=\*\*)|$)", line.group(1)
     )
-    assert [(color, name) for color, name, *_ in said] == list(zip(HUES, names(f), strict=False))
+    assert [(name, color) for color, name, *_ in said] == list(hues(f).items())
+    if "phase" not in f.truth.resolved:
+        told_arcs(f, said)
+        return
     for (_, _, word, value, held), start, phase in zip(said, starts(f), f.truth.resolved["phase"], strict=False):
         if value:
             size = {"day": DAY, "hour": 3600.0}[word]
@@ -80,3 +91,22 @@ def told(f, text):
         assert sorted(part for part in held.split(", ") if part.endswith("off")) == sorted(off)
     never = [phase["name"] for phase in f.truth.resolved["phase"]][len(names(f)) :]
     assert all(f"**{' and '.join(never)}** never began" in text for _ in never)
+
+
+def told_arcs(f, said):
+    """When the first arc of each kind begins, and the throttle on those that are partial: what the push is of the full
+    one of the final model at its switch, a_c (1 au / r) / sqrt(2)."""
+    first = {name: start for name, start in zip(reversed(names(f)), reversed(starts(f)), strict=True)}
+    for _, name, word, value, held in said:
+        if value:
+            size = {"day": DAY, "hour": 3600.0}[word]
+            assert abs(float(value) * size - (first[name] - f.truth.time[0])) <= 0.51 * size
+        assert bool(held) == (name == "partial thrust")
+        if held:
+            full = f.truth.resolved["device"]["characteristic_acceleration"] / np.sqrt(2)
+            rows = np.array(names(f))[of_rows(f)] == name
+            distance = np.linalg.norm(f.truth.position, axis=1) / AU
+            share = np.linalg.norm(f.truth.thrust, axis=1)[rows] * distance[rows] / full
+            low, high = re.fullmatch(r"throttle ([\d.]+)-([\d.]+)", held).groups()
+            assert abs(share.min() - float(low)) < 0.02
+            assert abs(share.max() - float(high)) < 0.02

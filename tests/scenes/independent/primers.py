@@ -105,7 +105,8 @@ def costate_flight(scene, r, v):
         return np.concatenate([v, a, pull - push, -lam_r])
 
     scale = np.repeat([np.linalg.norm(x) for x in start.reshape(4, 3)], 3)
-    span = (0.0, scene.propagation.duration)
+    arcs = scene.steering.arcs  # the first one is at full thrust, and behind it the switch would be thrown without end
+    span = (0.0, arcs[0].duration if arcs else scene.propagation.duration)
     return solve_ivp(rates, span, start, "DOP853", rtol=1e-13, atol=1e-15 * scale, dense_output=True).sol
 
 

@@ -63,9 +63,10 @@ def words(found: Solution) -> Iterator[str]:
         yield f"  Mind: {note}."
     if isinstance(flight, Rendezvous) and flight.window is not None:
         yield from _best_dates(flight.window, flight.slope)
+        missing = "not searched" if flight.ending.stopped else "not found"
         yield "  Leaving on       takes, days"
         for day, time in zip(flight.window.departures, flight.window.times, strict=True):
-            took = f"{time / DAY:9.3f}" if np.isfinite(time) else "none found"
+            took = f"{time / DAY:9.3f}" if np.isfinite(time) else missing
             yield f"  {np.datetime_as_string(day, 'D')}       {took}"
 
 

@@ -21,6 +21,7 @@ from sailviz.design.minimum_time.arc_structures import (
     starts,
 )
 from sailviz.design.minimum_time.boundary_conditions import ToCircle, hamiltonians, polar
+from sailviz.design.minimum_time.effort import Effort
 from sailviz.design.minimum_time.planar_transfer import Transfer, no_transfer, time_unit
 from sailviz.design.minimum_time.search import search
 from sailviz.design.minimum_time.singular_arcs import KINDS, Arc, propagate_arcs, switching
@@ -53,16 +54,18 @@ def search_by_arcs(
     accept: Callable[[np.ndarray], bool],
     progress: Callable[[float], None] = lambda share: None,
     check: Check = nothing,
+    effort: Effort | None = None,
 ) -> FarSearch:
     """Follow the fastest flights to a near circle to the flight's own. flight_time(radius) : a rough one to any circle;
-    accept : as for `search`."""
+    accept, effort : as for `search`."""
     arrived: list[Structure] = []
     farthest: ByArcs | None = None
     followed = circles = 0
     for near in NEAR:
         radius = min(near, flight.radius**0.6)
         base = ToCircle(flight.sail, flight.start, radius)
-        easy = search(base, SPAN * flight_time(radius), DIRECTIONS, True, accept)
+        easy = search(base, SPAN * flight_time(radius), DIRECTIONS, True, accept, effort=effort)
+        check()
         for extremal in easy.extremals[:MOST]:
             check()
             followed += 1

@@ -259,9 +259,16 @@ def _by_arcs(
 ) -> FarSearch | None:
     """What was followed outwards along rows of arcs; None where the effort ended before."""
     with effort.stoppable():
-        return search_by_arcs(
-            flight, flight_time, accept, lambda share: effort.report(share, "arcs of partial thrust"), effort.check
+        found = search_by_arcs(
+            flight,
+            flight_time,
+            accept,
+            lambda share: effort.report(share, "arcs of partial thrust"),
+            effort.check,
+            effort,
         )
+        effort.count("circles solved on the way outwards", found.circles)
+        return found
     return None
 
 

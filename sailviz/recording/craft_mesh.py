@@ -62,7 +62,7 @@ def craft_mesh(recording: Recording) -> CraftMesh | None:
     if root is None or "/scene" not in recording:
         return None
     scene = recording["/scene"]
-    craft = craft_of({name: np.asarray(scene[name]) for name in scene})
+    craft = craft_of({name: np.asarray(scene[name]) for name in scene}, recording.resolved)
     size, nominal = _size(craft)
     lines = {name: _strips(recording[name]) for name in _below(recording, root) if "strips" in recording[name]}
     seams = tuple(size * strip for strip in lines.pop(f"{root}/seams", []))

@@ -21,9 +21,10 @@ from sailviz.cli.shared import (
     tell,
     time_limit_option,
 )
-from sailviz.cli.transfer_in_words import summary, words
+from sailviz.cli.transfer_in_words import days, summary, words
 from sailviz.cli.transfer_question import Question, question_options
 from sailviz.constants import DAY
+from sailviz.design.direct.extra import NoCasadiError
 from sailviz.errors import OutputError
 from sailviz.files import write_text
 
@@ -103,16 +104,16 @@ def transfer(
             found = find(
                 start, aim, sails[0], acceleration * 1e-3,
                 orbits=asked.orbits, departure=asked.departure, starts=asked.starts, dates=asked.dates,
-                effort=effort,
+                method=asked.method, limits=asked.limits, effort=effort,
             )  # fmt: skip
         text = scene_of(found, form) if output is not None and found.flight.feasible else None
-    except (ValueError, OutputError) as error:
+    except (ValueError, OutputError, NoCasadiError) as error:
         tell(error)
         raise click.exceptions.Exit(BAD_INPUT) from None
     if as_json:
         click.echo(json.dumps(summary(found), indent=2))
     elif quiet and found.flight.feasible:
-        click.echo(f"{found.flight.time / DAY:.6f}")
+        click.echo(days(found.flight))
         if found.flight.ending.mark:
             tell(found.flight.ending.mark.strip())
     else:

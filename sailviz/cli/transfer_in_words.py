@@ -11,7 +11,8 @@ from sailviz.constants import AU, DAY
 if TYPE_CHECKING:
     import numpy as np
 
-    from sailviz.design.minimum_time import Transfer
+    from sailviz.design.direct import DirectFlight
+    from sailviz.design.minimum_time import OrbitTransfer, Rendezvous, Transfer
     from sailviz.design.minimum_time.effort import Ending
     from sailviz.design.minimum_time.planet_rendezvous import Window
     from sailviz.transfers import Solution
@@ -19,14 +20,55 @@ if TYPE_CHECKING:
 MOST_OF = 0.5  # of a flight at partial voltage: from there on a stronger sail is hardly faster
 
 
+def direct_words(found: Solution, flight: DirectFlight) -> Iterator[str]:
+    """What the direct method found and the indirect one has not confirmed, line by line."""
+    from sailviz.design.minimum_time.state_costate import TIME_UNIT
+    from sailviz.transfers import device_words
+
+    yield f"{found.origin.name} to {found.target.name}, between circles in one plane"
+    yield f"{device_words(flight.device)}, {flight.characteristic_acceleration * 1e3:g} mm/s² at 1 au"
+    if not flight.feasible:
+        yield from _without_an_answer(flight.reason, flight.ending)
+        return
+    rows = [("flight time", f"{flight.days} d, {flight.revolutions:.4f} revolutions about the Sun")]
+    rows += [("found by", f"the direct method; {_confirmation(flight)}")]
+    rows += [("flown again", f"its table misses the end by {flight.miss:.1e}, worth {flight.error / DAY:.1g} d")]
+    rows += [("closest to the Sun", f"{flight.closest / AU:.4f} au")]
+    kinds = {"T": "thrust", "C": "coast", "S": "partial voltage"}
+    if flight.arcs:
+        days = [f"{kinds[arc.kind]} {arc.duration * TIME_UNIT / DAY:.1f} d" for arc in flight.arcs]
+        rows += [("arcs", ", ".join(days))]
+    rows += [("local solutions", f"{len(flight.solutions)} found")]
+    for name, value in rows:
+        yield f"  {name:<19}{value}"
+    yield "  " + flight.claim
+
+
+def _held(flight: DirectFlight) -> str:
+    from sailviz.design.minimum_time.state_costate import TIME_UNIT
+
+    rate = flight.limits.turn_rate
+    return "" if rate is None else f"; the sail turns by {math.degrees(rate) / TIME_UNIT * DAY:.3g}° a day at most"
+
+
+def _confirmation(flight: DirectFlight) -> str:
+    if flight.limits.any:
+        return "under limits the indirect one confirms nothing" + _held(flight)
+    return "the indirect one did not confirm it"
+
+
 def words(found: Solution) -> Iterator[str]:
     """What was found, line by line."""
     import numpy as np
 
+    from sailviz.design.direct import DirectFlight
     from sailviz.design.minimum_time import Rendezvous, Transfer
     from sailviz.transfers import device_words, path_of
 
     flight = found.flight
+    if isinstance(flight, DirectFlight):
+        yield from direct_words(found, flight)
+        return
     craft = device_words(flight.device)
     ways = {
         "circles": "between circles in one plane",
@@ -56,6 +98,8 @@ def words(found: Solution) -> Iterator[str]:
         rows += _partial_voltage(flight)
     rows += [("residual", f"{flight.residual:.1e}, Hamiltonian drift {flight.hamiltonian_drift:.1e}")]
     rows += [("local solutions", f"{flight.solutions} found")]
+    if isinstance(flight, Transfer) and flight.method.startswith("direct"):
+        rows += [("found by", "the direct method; confirmed by the indirect one, whose numbers these are")]
     for name, value in rows:
         yield f"  {name:<19}{value}"
     yield "  " + flight.claim[0].upper() + flight.claim[1:] + ("" if flight.claim.endswith(".") else ".")
@@ -135,9 +179,12 @@ def _day(moment: np.datetime64) -> str:
 
 def summary(found: Solution) -> dict[str, Any]:
     """What was found, for JSON."""
-    from sailviz.design.minimum_time import Rendezvous
+    from sailviz.design.direct import DirectFlight
+    from sailviz.design.minimum_time import Rendezvous, Transfer
 
     flight = found.flight
+    if isinstance(flight, DirectFlight):
+        return direct_summary(found, flight)
     values: dict[str, Any] = {
         "kind": found.kind,
         "from": found.origin.name,
@@ -159,10 +206,43 @@ def summary(found: Solution) -> dict[str, Any]:
         "hamiltonian_drift": _known(flight.hamiltonian_drift),
         "local_solutions": flight.solutions,
     }
+    if isinstance(flight, Transfer):
+        values |= {"method": flight.method}
     if isinstance(flight, Rendezvous):
         values |= {"departure": str(flight.departure), "arrival": str(flight.arrival)}
         values |= {"slope_d_per_d": _known(flight.slope), "mind": list(found.notes)}
     return values
+
+
+def direct_summary(found: Solution, flight: DirectFlight) -> dict[str, Any]:
+    """What the direct method found and the indirect one has not confirmed, for JSON."""
+    return {
+        "kind": found.kind,
+        "from": found.origin.name,
+        "to": found.target.name,
+        "sail": flight.device,
+        "characteristic_acceleration_mm_s2": flight.characteristic_acceleration * 1e3,
+        "found": flight.feasible,
+        "claim": flight.claim,
+        "method": "direct method",
+        "confirmed": False,
+        "time_d": _known(round(flight.time / DAY, flight.digits)) if flight.feasible else None,
+        "miss": _known(flight.miss),
+        "error_d": _known(flight.error / DAY),
+        "revolutions": _known(flight.revolutions),
+        "closest_au": _known(flight.closest / AU),
+        "local_solutions": len(flight.solutions),
+        "stopped": flight.ending.stopped or None,
+        "tried": flight.ending.tried,
+        "seconds": flight.ending.seconds,
+    }
+
+
+def days(flight: Transfer | OrbitTransfer | Rendezvous | DirectFlight) -> str:
+    """The flight time alone, with the digits that are known."""
+    from sailviz.design.direct import DirectFlight
+
+    return flight.days if isinstance(flight, DirectFlight) else f"{flight.time / DAY:.6f}"
 
 
 def _known(value: float) -> float | None:

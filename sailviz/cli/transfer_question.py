@@ -15,6 +15,7 @@ from sailviz.constants import AU, DAY
 if TYPE_CHECKING:
     import numpy as np
 
+    from sailviz.design.direct import Limits
     from sailviz.transfers import Place
 
 _WHITHER = (
@@ -44,6 +45,25 @@ _WHITHER = (
         metavar="DEG",
         help="Of the circle aimed at, to the ecliptic.",
     ),
+    click.option(
+        "--method",
+        type=click.Choice(["auto", "indirect", "direct"]),
+        default="auto",
+        show_default=True,
+        help="By costates; by collocation (extra direct); or the second where the first fails or limits are set.",
+    ),
+    click.option(
+        "--cone-deg",
+        type=Number(0, 90, "degrees", above=True),
+        metavar="DEG",
+        help="Hold the sail within so much of the sunlight (extra direct).",
+    ),
+    click.option(
+        "--slew-deg-day",
+        type=Number(0, 1e4, "degrees a day", above=True),
+        metavar="DEG",
+        help="Turn the sail in space no faster (extra direct).",
+    ),
     click.option("--starts", type=click.IntRange(1, 200), help="Departure points tried with --orbits (24)."),
 )
 
@@ -67,6 +87,9 @@ class Question:
     radius_au: float | None
     inclination_deg: float | None
     starts: int | None
+    method: str
+    cone_deg: float | None
+    slew_deg_day: float | None
 
     @classmethod
     def taken(cls, options: dict[str, Any]) -> Question:
@@ -95,8 +118,25 @@ class Question:
     def _about_tables(self, sails: tuple[str, ...], as_table: bool, output: str | None) -> Iterator[str]:
         if as_table and (self.orbits or self.date or output is not None or self.inclination_deg):
             yield "--table shows flights between circles: no --orbits, --date, --inclination-deg or -o."
+        if as_table and (self.method == "direct" or self.limited):
+            yield "--table shows flights of the indirect method: no --method direct, --cone-deg or --slew-deg-day."
         if len(sails) > 1 and not as_table:
             yield "Several sails are compared with --table."
+
+    @property
+    def limited(self) -> bool:
+        """Whether the sail is held to limits on the way."""
+        return self.cone_deg is not None or self.slew_deg_day is not None
+
+    @property
+    def limits(self) -> Limits:
+        """What the sail is held to on the way."""
+        from sailviz.transfers import limits
+
+        return limits(
+            cone=None if self.cone_deg is None else math.radians(self.cone_deg),
+            turn_rate=None if self.slew_deg_day is None else math.radians(self.slew_deg_day) / DAY,
+        )
 
     def aim(self, target: str | None) -> Place:
         """The place aimed at."""

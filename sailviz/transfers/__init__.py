@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 from sailviz.lazy import lazily
 
 if TYPE_CHECKING:
+    from sailviz.transfers.direct import limits as limits
     from sailviz.transfers.places import Place as Place
     from sailviz.transfers.places import circle as circle
     from sailviz.transfers.places import place as place
@@ -22,6 +23,7 @@ _HOMES = {
     "Solution": "search",
     "FlightTimes": "search",
     "find": "search",
+    "limits": "direct",
     "flight_times": "search",
     "place": "places",
     "place_of_file": "places",

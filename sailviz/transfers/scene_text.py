@@ -9,6 +9,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from sailviz.constants import AU, DAY, MU_SUN
+from sailviz.design.direct.search import DirectFlight
 from sailviz.design.minimum_time import replay
 from sailviz.design.minimum_time.orbits import OrbitTransfer
 from sailviz.design.minimum_time.planar_transfer import Transfer
@@ -25,9 +26,11 @@ from sailviz.words import nearest
 TABLE_ERROR = 1e-5  # rad of the attitudes of a steering table between its rows
 ARC_TABLE_ERROR = 3e-6  # of flights in arcs, and of the throttle on those that are singular
 AFTER_SWITCH = 1e-3  # s from the row before a switch to the row after it
+LONG = 3000 * DAY  # from which on twelve digits of a day do not tell these two apart
 LEAST_TILT = np.radians(0.01)  # of an orbit whose node is worth checking
 
 Flight = Transfer | OrbitTransfer | Rendezvous
+ALLOWED = 3.0  # misses of a direct flight's table within which a scene's flight of it must end
 
 
 def solved(flight: Flight) -> replay.Solved:
@@ -55,7 +58,7 @@ def path_of(flight: Flight, samples: int = 1000) -> tuple[np.ndarray, np.ndarray
 
 
 def scene_of(
-    solution: Solution | Flight,
+    solution: Solution | Flight | DirectFlight,
     form: str = "costates",
     *,
     title: str | None = None,
@@ -65,13 +68,15 @@ def scene_of(
     """The text of a scene that `sailviz run` flies to the same end: TOML, for `tomllib.loads` and `load_scene`.
 
     solution : a Solution, or a Transfer, OrbitTransfer or Rendezvous. form : "costates", which repeats the flight to
-    1e-8, or "table" of pitch and clock angle, to 1e-5. target : the scene's [target], by default the Solution's, or
-    the orbit reached. ValueError where there is no flight.
+    1e-8, or "table" of pitch and clock angle, to 1e-5; a DirectFlight has its table only. target : the scene's
+    [target], by default the Solution's, or the orbit reached. ValueError where there is no flight.
     """
     if form not in ("costates", "table"):
         raise ValueError(f'there is no form "{form}". {nearest(form, ("costates", "table"))}')
     whole = solution if isinstance(solution, Solution) else None
     flight = solution.flight if isinstance(solution, Solution) else solution
+    if isinstance(flight, DirectFlight):
+        return _direct_scene(flight, whole, title, target, outputs)
     it = solved(flight)
     position, velocity, _ = path_of(flight)
     reached = elements(position[-1], velocity[-1], MU_SUN)
@@ -108,6 +113,58 @@ def scene_of(
         "tolerance = 1e-13",
     ]
     lines += _expectations(reached, position, 1e-7 if form == "costates" else 1e-5, isinstance(flight, Rendezvous))
+    return "\n".join(lines) + "\n"
+
+
+def _direct_scene(
+    flight: DirectFlight,
+    whole: Solution | None,
+    title: str | None,
+    target: dict[str, str | float] | None,
+    outputs: int,
+) -> str:
+    """The scene of a flight of the direct method: its table, and an end as near as the table was seen to come."""
+    if flight.table is None or flight.flown is None:
+        raise ValueError(f"there is no flight to write down: {flight.reason}")
+    craft = device_words(flight.device)
+    ways = f"from {whole.origin.name} to {whole.target.name}" if whole else "from orbit to orbit"
+    about = (
+        f"**{craft}** of {flight.characteristic_acceleration * 1e3:g} mm/s², steered {ways} by a table of pitch and "
+        f"clock angle in **{flight.days} d** and {flight.revolutions:.3f} revolutions: the best found by the direct "
+        f"method, not confirmed by another; its table misses the end by {flight.miss:.0e}."
+    )
+    reached = elements(flight.flown.position[-1], flight.flown.velocity[-1], MU_SUN)
+    if target is None:
+        target = whole.target.table if whole else Place("reached", _plain(reached)).table | {"name": "orbit reached"}
+    e = elements(flight.position, flight.velocity, MU_SUN)
+    lines = [
+        f"title    = {_text(title or f'{craft}: the fastest way {ways}')}",
+        'thesis   = "6"',
+        f"about    = {_text(about)}",
+        'family   = "transfers"',
+        "",
+        "[start]",
+        'kind = "circular"',
+        f"radius_au = {_number(float(e.semi_major_axis) / AU)}",
+        "",
+        "[device]",
+        *_device(flight),
+        "",
+        "[steering]",
+        *_table_lines(flight.table),
+        "",
+        "[target]",
+        *(f"{key} = {_value(value)}" for key, value in target.items()),
+        "",
+        "[propagation]",
+        f"duration_d = {float(flight.time / DAY)!r}",
+        f"outputs = {outputs}",
+        "tolerance = 1e-12",
+    ]
+    within = max(ALLOWED * flight.miss, 1e-8)
+    radius = float(np.linalg.norm(flight.flown.position[-1])) / AU
+    lines += ["", "[[expect]]", 'quantity = "radius_au"', 'at = "end"']
+    lines += [f"value = {radius!r}", f"within = {within * radius:.1e}"]
     return "\n".join(lines) + "\n"
 
 
@@ -161,7 +218,7 @@ def _start(flight: Flight, it: replay.Solved, circular: bool) -> list[str]:
     ]
 
 
-def _device(it: replay.Solved) -> list[str]:
+def _device(it: replay.Solved | DirectFlight) -> list[str]:
     strength = f"characteristic_acceleration_mm_s2 = {_number(it.characteristic_acceleration * 1e3)}"
     if isinstance(it.device, Film):
         b = ", ".join(f"{name} = {_number(getattr(it.device, name))}" for name in ("b1", "b2", "b3", "efficiency"))
@@ -180,12 +237,15 @@ def _arcs(it: replay.Solved) -> list[str]:
 
 
 def _steering_table(it: replay.Solved) -> list[str]:
-    found = replay.steering_table(it, error=ARC_TABLE_ERROR if it.arcs else TABLE_ERROR)
+    return _table_lines(replay.steering_table(it, error=ARC_TABLE_ERROR if it.arcs else TABLE_ERROR))
+
+
+def _table_lines(found: replay.SteeringTable) -> list[str]:
     time = np.round(found.time, 4)
     again = np.nonzero(np.diff(time) <= 0)[0] + 1  # the second row of a switch
     time[again] = time[again - 1] + AFTER_SWITCH
     columns = {
-        "time_d": [f"{t:.12g}" for t in time / DAY],
+        "time_d": [f"{t:.{12 if time[-1] < LONG else 14}g}" for t in time / DAY],
         "pitch_deg": [f"{x:.6f}" for x in np.degrees(found.pitch)],
         "clock_deg": [f"{x:.6f}" for x in np.degrees(found.clock)],
     }

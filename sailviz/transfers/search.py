@@ -15,13 +15,18 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from sailviz.design.direct.extra import there_is_casadi
+from sailviz.design.direct.limits import Limits
+from sailviz.design.direct.search import DirectFlight
+from sailviz.design.direct.transcription import NO_LIMITS
 from sailviz.design.minimum_time.circles import circle_to_circle
-from sailviz.design.minimum_time.effort import NOT_FOUND, Effort, Progress, Stopped
+from sailviz.design.minimum_time.effort import IMPOSSIBLE, NOT_FOUND, Effort, Progress, Stopped
 from sailviz.design.minimum_time.orbits import STARTS, OrbitTransfer, orbit_to_orbit
 from sailviz.design.minimum_time.planar_transfer import Transfer
 from sailviz.design.minimum_time.planet_rendezvous import DATES, Date, Rendezvous, rendezvous
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film
+from sailviz.transfers.direct import METHODS, between_circles
 from sailviz.transfers.places import Place, circle, names, place, trusted
 from sailviz.words import nearest
 
@@ -39,7 +44,7 @@ class Solution:
     kind: str
     origin: Place
     target: Place
-    flight: Transfer | OrbitTransfer | Rendezvous
+    flight: Transfer | OrbitTransfer | Rendezvous | DirectFlight
     notes: tuple[str, ...] = ()
 
     @property
@@ -59,6 +64,8 @@ def find(
     departure: Date | tuple[Date, Date] | None = None,
     starts: int | None = None,
     dates: int | None = None,
+    method: str = "auto",
+    limits: Limits = NO_LIMITS,
     progress: Progress | None = None,
     time_limit: float | None = None,
     effort: Effort | None = None,
@@ -68,15 +75,18 @@ def find(
     origin, target : names in PLACES, or a Place. device : a name in SAILS or a Film, characteristic_acceleration m/s2.
     Between circles at the mean distances; with orbits=True, or to an inclined circle, between the orbits in space with
     free anomalies; with departure, a date or (first, last) as datetime64 or text, from planet to planet. starts, dates
-    : of `orbit_to_orbit` and `rendezvous`. progress(share, words) is called now and then; after time_limit s of wall
-    time the best so far is the answer, marked; effort : an `Effort` instead of both, which may listen to Ctrl-C.
-    ValueError for what is no place, sail or date; where no flight was found, `Solution.outcome` says whether there is
-    none.
+    : of `orbit_to_orbit` and `rendezvous`. method : "indirect", by costates; "direct", by collocation and confirmed by
+    the indirect one, between circles and with the extra `direct` only; "auto", the direct one where the other fails or
+    limits are set: those it keeps to, and an answer under them is a DirectFlight. progress(share, words) is called now
+    and then; after time_limit s of wall time the best so far is the answer, marked; effort : an `Effort` instead of
+    both, which may listen to Ctrl-C. ValueError for what is no place, sail or date; where no flight was found,
+    `Solution.outcome` says whether there is none.
     """
     effort = Effort.of(effort, progress, time_limit)
     begin, end = (place(x) if isinstance(x, str) else x for x in (origin, target))
     if isinstance(device, str) and device not in SAILS:
         raise ValueError(f'there is no sail called "{device}". {nearest(device, SAILS)}')
+    _check_method(method, limits, orbits or departure is not None or bool(end.circle and end.orbit.inclination))
     a_c = characteristic_acceleration
     if departure is not None:
         return _between_bodies(begin, end, device, a_c, departure, dates, effort)
@@ -89,7 +99,30 @@ def find(
     begin, end = (circle(x.radius, name=x.name) for x in (begin, end))
     if abs(end.radius / begin.radius - 1) < SAME_CIRCLE:
         raise ValueError(f"{end.name} is where {begin.name} is: between the two circles there is nothing to fly")
-    return Solution("circles", begin, end, circle_to_circle(begin.radius, end.radius, device, a_c, effort=effort))
+    if method != "direct" and not limits.any:
+        flight = circle_to_circle(begin.radius, end.radius, device, a_c, effort=effort)
+        done = flight.feasible or effort.stopped or flight.ending.outcome == IMPOSSIBLE
+        if done or method == "indirect" or not _may_be_direct(device):
+            return Solution("circles", begin, end, flight)
+    direct = between_circles(begin.radius, end.radius, device, a_c, limits=limits, effort=effort)
+    return Solution("circles", begin, end, direct)
+
+
+def _check_method(method: str, limits: Limits, elsewhere: bool) -> None:
+    """ValueError for a method that is none or that does not answer the question. elsewhere : it is not asked between
+    circles in one plane."""
+    if method not in METHODS:
+        raise ValueError(f'there is no method "{method}". {nearest(method, METHODS)}')
+    if elsewhere and (method == "direct" or limits.any):
+        what = "the direct method" if method == "direct" else "a limit on the way"
+        raise ValueError(f"{what} is for flights between circles in one plane")
+    if method == "indirect" and limits.any:
+        raise ValueError("limits on the way are kept by the direct method only")
+
+
+def _may_be_direct(device: Film | str) -> bool:
+    """Whether the direct method is installed and knows a sail."""
+    return there_is_casadi() and (device not in ELECTRIC_SAILS or device == "electric-sail")
 
 
 def _between_bodies(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import sys
 
 import pytest
 from click.testing import CliRunner
@@ -95,12 +96,22 @@ def test_a_table_tells_what_was_not_searched_from_what_was_not_found(monkeypatch
         (("earth", "earth"), "nothing to fly"),
         (("earth", "mars", "--inclination-deg", 10), "--radius-au"),
         (("earth", "mars", "--table", "--orbits"), "between circles"),
+        (("earth", "mars", "--table", "--cone-deg", 30), "flights of the indirect method"),
+        (("earth", "mars", "--orbits", "--method", "direct"), "between circles in one plane"),
+        (("earth", "mars", "--cone-deg", 30, "--method", "indirect"), "direct method only"),
     ],
 )
 def test_bad_questions_are_answered_in_a_sentence(words, answer):
     said = ask(*words)
     assert said.exit_code == 2
     assert answer in said.output
+
+
+def test_a_method_that_is_not_installed_is_told_with_what_to_install(monkeypatch):
+    monkeypatch.setitem(sys.modules, "casadi", None)
+    said = ask("earth", "mars", "--method", "direct")
+    assert said.exit_code == 2
+    assert "the direct method needs casadi: pip install 'sailviz[direct]'" in said.output
 
 
 def test_all_that_does_not_go_together_is_told_at_once():

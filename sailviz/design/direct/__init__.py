@@ -10,6 +10,8 @@ if TYPE_CHECKING:
     from sailviz.design.direct.extra import NoCasadiError as NoCasadiError
     from sailviz.design.direct.extra import there_is_casadi as there_is_casadi
     from sailviz.design.direct.limits import Limits as Limits
+    from sailviz.design.direct.polish import polished as polished
+    from sailviz.design.direct.polish import structure_of as structure_of
     from sailviz.design.direct.search import DirectFlight as DirectFlight
     from sailviz.design.direct.search import fastest as fastest
     from sailviz.design.direct.search import sail_of as sail_of
@@ -25,7 +27,9 @@ _HOMES = {
     "Question": "transcription",
     "fastest": "search",
     "fit": "costate_fit",
+    "polished": "polish",
     "sail_of": "search",
+    "structure_of": "polish",
     "there_is_casadi": "extra",
 }
 __getattr__, __dir__, __all__ = lazily(__name__, _HOMES)

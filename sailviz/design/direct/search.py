@@ -27,6 +27,7 @@ from sailviz.propulsion.solar_sail import FILMS, Film
 
 SAME = 1e-5  # relative flight time below which two solutions are one
 REFINEMENTS = 3  # meshes on the switches, each read from the one before
+FLIES = 3e-3  # largest miss, canonical, of a flight that is told
 SLOWER = 1e-3  # relative flight time that a sharpened flight may lose: the coarse one has thrust between its points
 
 
@@ -92,12 +93,12 @@ class DirectFlight:
     @property
     def days(self) -> str:
         """The flight time in days with as many digits as its flight by the ordinary propagator confirms."""
-        return f"{self.time / DAY:.{self.digits}f}"
+        return f"{round(float(self.time / DAY), self.digits):.{max(self.digits, 0)}f}"
 
     @property
     def digits(self) -> int:
-        """Decimals of the flight time in days that are confirmed."""
-        return int(np.clip(np.floor(-np.log10(max(self.error / DAY, 1e-12))), 0, 6))
+        """Decimals of the flight time in days that are confirmed, negative where whole days are not."""
+        return int(np.clip(np.floor(-np.log10(max(self.error / DAY, 1e-12))), -3, 6))
 
     @property
     def claim(self) -> str:
@@ -205,6 +206,12 @@ def _answer(
     q, nodes = at.question, best.nodes
     table = table_of(q, nodes)
     flown = confirm(at, nodes, table, characteristic_acceleration)
+    if not flown.miss < FLIES:
+        reason = (
+            f"the direct method's flight of {best.span * TIME_UNIT / DAY:.1f} d is none: its attitudes, flown, miss "
+            f"the end by {flown.miss:.1e}"
+        )
+        return no_flight(q, characteristic_acceleration, reason, effort)
     place = flown.position
     cross = np.linalg.norm(np.cross(place[:-1], place[1:]), axis=1)
     swept = float(np.sum(np.arctan2(cross, np.sum(place[:-1] * place[1:], axis=1))))

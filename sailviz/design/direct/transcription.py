@@ -217,7 +217,9 @@ def _point(q: Question) -> _Point:
         bounded = sail.constraints(axes, x, n, throttle, q.limits)
         low, high = [0.0] * len(bounded), [np.inf] * len(bounded)
         if not sail.throttles:
-            bounded, low, high = [*bounded, ca.sumsqr(n)], [*low, -np.inf], [*high, 1.0]
+            # within a cone the hull has less thrust than any attitude: only a sail that flaps would feel so little
+            least = -np.inf if q.limits.cone is None else 1.0
+            bounded, low, high = [*bounded, ca.sumsqr(n)], [*low, least], [*high, 1.0]
         more = []
     else:
         n, rate = x[axes.size + 1 :], u[: axes.turn_axes]

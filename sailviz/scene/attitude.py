@@ -241,6 +241,43 @@ class ControlledAttitude(StartsTurned):
         return self
 
 
+class PhaseAttitude(Section):
+    """How the craft turns during a phase: let go, or held. control and actuators : those of [attitude] where they are
+    not said; the mass that turns is the same all the way, and how it turns is handed on."""
+
+    kind: Literal["free", "controlled"]
+    control: Annotated[PointingControl | SpinAxisControl, Field(discriminator="kind")] | None = None
+    actuators: (
+        Annotated[
+            list[Annotated[Wheels | SlidingMass | Vane | Reflectivity, Field(discriminator="kind")]],
+            Field(min_length=1, max_length=64),
+        ]
+        | None
+    ) = None
+
+    def of(self, whole: StartsTurned) -> FreeAttitude | ControlledAttitude:
+        """The attitude that holds during the phase, of a scene's. ValueError, with a sentence, where there is none."""
+        if isinstance(whole, SpinAveragedAttitude):
+            raise ValueError("an averaged spin does not say at which angle the craft stands: it goes on to the end")
+        names = (*TurningMass.model_fields, *StartsTurned.model_fields)
+        same = {name: getattr(whole, name) for name in names} | {"rates": getattr(whole, "rates", None)}
+        if self.kind == "free":
+            if self.control is not None or self.actuators is not None:
+                raise ValueError('control and actuators belong to kind "controlled"')
+            had = getattr(whole, "actuators", None) or []
+            kept = sorted({one.kind for one in had if one.kind in ("vane", "reflectivity")})
+            if kept:
+                raise ValueError(f"where {' and '.join(kept)} would be left when the craft is let go is not known")
+            return FreeAttitude.model_construct(**same | {"kind": "free", "rates": same["rates"] or [0.0, 0.0, 0.0]})
+        control, actuators = (getattr(self, name) or getattr(whole, name, None) for name in ("control", "actuators"))
+        if control is None or actuators is None:
+            missing = "control" if control is None else "actuators"
+            raise ValueError(f"needs {missing}, which the scene's [attitude] has none of either")
+        given = same | {"kind": "controlled", "control": control, "actuators": actuators}
+        found = ControlledAttitude.model_construct(**given)
+        return found._goes_together()  # as the scene's own
+
+
 Attitudes = Annotated[
     PrescribedAttitude | FreeAttitude | ControlledAttitude | SpinAveragedAttitude, Field(discriminator="kind")
 ]

@@ -51,9 +51,12 @@ UNSAID = {  # by table, keys without which scenes were complete before they were
     "device": ("edge_area", "name", "steering", "shape", "back", "roll", "ageing", "hottest", "wheel"),
     "device.shape": ("air",),
     "expect": ("device",),
+    "phase": ("attitude",),
     "steering": ("in_shadow", "minimum_perigee", "margin", "arcs"),
     "target": ("mean_anomaly", "elements_date"),
 }
+
+LISTS = ("expect", "phase")  # of them, those of which there may be several
 
 
 class Scene(Section):
@@ -146,11 +149,14 @@ class Scene(Section):
         not said: what scenes were before they could be said, they still are."""
         values = self.model_dump(mode="json")
         beside = [device.model_dump(mode="json") for device in self._beside]
-        tables = [("", values), *((name, values[name] or {}) for name in UNSAID if name in values and name != "expect")]
+        tables = [
+            ("", values),
+            *((name, values[name] or {}) for name in UNSAID if name in values and name not in LISTS),
+        ]
         tables += [("device", device) for device in beside]
         tables += [("device.shape", device.get("shape") or {}) for device in (values["device"], *beside)]
         tables += [("steering", device["steering"] or {}) for device in beside]
-        tables += [("expect", expected) for expected in values["expect"]]
+        tables += [(name, one) for name in LISTS for one in values[name]]
         for name, table in tables:
             for key in UNSAID[name]:
                 if table.get(key, "") is None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Discriminator, Field, Tag, ValidationError
 
+from sailviz.scene.attitude import Attitudes, FreeAttitude, PhaseAttitude, SpinAveragedAttitude, StartsTurned
 from sailviz.scene.device import Devices, ElectricSail, PlasmaBrake
 from sailviz.scene.events import Crossing
 from sailviz.scene.quantities import spellings
@@ -71,6 +72,7 @@ class Phase(Section):
     device: Annotated[
         Annotated[DeviceState, Tag("one")] | Annotated[list[StateOfOne], Tag("several")], Discriminator(_listed)
     ] = DeviceState()
+    attitude: PhaseAttitude | None = None
     propagation: PhasePropagation = PhasePropagation()
 
     @property
@@ -132,10 +134,12 @@ def equation(key: str, number: str) -> Until:
 def scene_of(scene: Scene, phase: Phase) -> Scene:
     """The scene that holds during a phase: its steering, its device and its tolerance in place of the whole's."""
     run, own = scene.propagation, phase.propagation
-    steering = steering_of_first(scene, phase)
+    steering, turns = steering_of_first(scene, phase), attitude_in(scene, phase)
+    followed = None if isinstance(turns, FreeAttitude | SpinAveragedAttitude) else scene.steering
     found = scene.model_copy(
         update={
-            "steering": scene.steering if steering is None else steering,
+            "steering": followed if steering is None else steering,
+            "attitude": turns,
             "device": _as_in(phase, scene.device),
             "propagation": run.model_copy(
                 update={
@@ -146,6 +150,16 @@ def scene_of(scene: Scene, phase: Phase) -> Scene:
         }
     )
     return found.with_beside(tuple(_as_in(phase, device) for device in scene.beside)) if scene.beside else found
+
+
+def attitude_in(scene: Scene, phase: Phase) -> Attitudes | None:
+    """How the craft turns during a phase: as in the whole scene where it says nothing, or nothing that can be."""
+    if phase.attitude is None or not isinstance(scene.attitude, StartsTurned):
+        return scene.attitude
+    try:
+        return phase.attitude.of(scene.attitude)
+    except ValueError:
+        return scene.attitude
 
 
 def _as_in(phase: Phase, device: Devices) -> Devices:

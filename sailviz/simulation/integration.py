@@ -33,6 +33,7 @@ def begun(p: Plan, finer: float = 1.0) -> Any:
         state: Any = gauss_jackson.start(*given, refinement=finer * refinement_for(p.scene.propagation.tolerance))
     elif p.turning is not None:
         state = INTEGRATORS[p.choice.integrator].start(*given, motion=p.turning.motion)
+        state.counter[INTEGRATORS[p.choice.integrator].TUMBLED] = int(p.turning.tumbled)
     else:
         state = INTEGRATORS[p.choice.integrator].start(*given)
     state.counter[IN_USE] = int(p.in_use)

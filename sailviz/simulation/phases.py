@@ -31,10 +31,12 @@ from sailviz.simulation.rows import (
     raise_failure,
     with_known_mass,
 )
+from sailviz.simulation.turned_rows import has_tumbled
 
 if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
+MOTION = "attitude/"  # before the names of its columns, among those of the environment
 LOOKS = 50  # moments of a phase, flown without rows, at which progress is told and Ctrl-C heard
 
 
@@ -122,11 +124,14 @@ def _flown(
         in_use = stepping.in_use(state)
         failed = filled.status not in (stepping.DONE, stepping.STOPPED, stepping.SURFACE)
         yield Flown(
-            phase.name, p, end, now, in_use, float(seen.max()), "" if goes_on else ended, filled.status * failed
+            phase.name, p, end, now[:7], in_use, float(seen.max()), "" if goes_on else ended, filled.status * failed
         )
         if not goes_on:
             return
-        p = plan(scene, **own, taken=Handover(number + 1, end, now[:3], now[3:6], float(now[6]), in_use))
+        turns = None
+        if p.turning is not None:
+            turns = replace(p.turning, motion=now[7:], tumbled=has_tumbled(state))
+        p = plan(scene, **own, taken=Handover(number + 1, end, now[:3], now[3:6], float(now[6]), in_use, turns))
 
 
 def _times(scene: Scene, legs: list[Flown]) -> list[np.ndarray]:
@@ -198,14 +203,18 @@ def _at_end(scene: Scene, leg: Flown, legs: list[Flown], noted: list[Event]) -> 
 
 
 def _columns(legs: list[Flown], setting: Setting) -> dict[str, np.ndarray]:
-    """Name -> values of a row without data, for every column of the environment that any phase has."""
+    """Name -> values of a row without data, for every column of the environment that any phase has, and of its motion:
+    wheels that are not there hold nothing."""
     found: dict[str, np.ndarray] = {}
     for leg in legs:
-        state = np.array([*leg.plan.position, *leg.plan.velocity, leg.plan.seventh])[:, None]
+        turns = [] if leg.plan.turning is None else leg.plan.turning.motion
+        state = np.array([*leg.plan.position, *leg.plan.velocity, leg.plan.seventh, *turns])[:, None]
         one = observed(leg.plan, setting, np.array([leg.plan.begin]), state, 0, np.inf)
         for name, values in one.environment.items():
             empty: Any = np.nan if values.dtype.kind == "f" else values.dtype.type(0)
             found.setdefault(name, np.full_like(values, empty))
+        for name, values in one.attitude.motion.items():
+            found.setdefault(f"{MOTION}{name}", np.zeros_like(values))
     return found
 
 
@@ -223,10 +232,14 @@ def _block(
 ) -> Run:
     block = observed(leg.plan, setting, filled.times, filled.states, row, off_time)
     known = block.environment
-    acted = {name: known.get(name, np.repeat(empty, len(block), axis=0)) for name, empty in columns.items()}
+    known = known | {f"{MOTION}{name}": values for name, values in block.attitude.motion.items()}
+    filled_up = {name: known.get(name, np.repeat(empty, len(block), axis=0)) for name, empty in columns.items()}
+    acted = {name: values for name, values in filled_up.items() if not name.startswith(MOTION)}
+    motion = {name.removeprefix(MOTION): values for name, values in filled_up.items() if name.startswith(MOTION)}
     return replace(
         block,
         environment=acted,
+        attitude=replace(block.attitude, motion=motion),
         bodies=bodies(leg.plan, planets, block.time) if drawn else {},
         events=tuple(with_known_mass(leg.plan, events)),
         ended=leg.ended if over else "",

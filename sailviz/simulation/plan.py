@@ -41,7 +41,15 @@ from sailviz.simulation.identity import identity_of
 from sailviz.simulation.sky import SceneSky, blown_by_air, pushed_by_shape, sky_of, under_sky
 from sailviz.simulation.start import design_of, held_radius, initial_state
 from sailviz.simulation.steering import steering_of
-from sailviz.simulation.turning import TurningPlan, begun_turning, moves, nobody_follows, turning_numbers, turning_of
+from sailviz.simulation.turning import (
+    TurningPlan,
+    begun_turning,
+    moves,
+    nobody_follows,
+    taken_over,
+    turning_numbers,
+    turning_of,
+)
 from sailviz.simulation.wheel import refuse_saturated, spins, wheel_numbers, wheel_of
 
 
@@ -54,6 +62,7 @@ class Handover(NamedTuple):
     velocity: np.ndarray  # (3,) m/s
     seventh: float  # number of the state: see Plan
     in_use: bool  # whether the device has not been switched off for good
+    turning: TurningPlan | None = None  # of a craft that turns, its state there
 
 
 @dataclass(frozen=True)
@@ -124,7 +133,9 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
     addresses, keep = _own_of(scene, steering, force)
     if steering is not None:
         steered = LoweredSteering(attitude.USER)
-    turning = turning_of(scene, steered)
+    turning, turned = turning_of(scene, steered), None if taken is None else taken.turning
+    if turning is not None and turned is not None:
+        turning = taken_over(turning, turned)
     when, times_beside = schedules(scene, steered.table, steered.breaks)
     if phase is not None:
         times_beside = in_phase(times_beside, [phase.state_of(device).level for device in scene.beside])
@@ -172,7 +183,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
     start = np.array([*position, *velocity, seventh])
     if taken is None:
         refuse_saturated(scene, model, start)
-    begun = begun_turning(scene, turning, model, sky is not None, begin, start)
+    begun = begun_turning(scene, turning, model, sky is not None, begin, start, turned)
     if begun is not None:  # from here on its steering points where it stands
         model.parameters["kinds"]["steering"] = attitude.INERTIAL
     return Plan(

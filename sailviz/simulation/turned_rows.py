@@ -53,7 +53,7 @@ def turned_rows(p: Plan, craft: TurningPlan, time: Array, states: Array, factor:
     )
     momentum = frames.from_frame(axes, rate @ inertia + wheels)
     motion = {"rate_rad_s": rate, "angular_momentum_N_m_s": momentum}
-    if body.wheel_torque > 0:
+    if body.wheel_torque > 0 or np.any(craft.motion[WHEELS - Q : WHEELS - Q + 3]):
         motion["wheels_N_m_s"] = wheels
     columns: Columns = {}
     if body.lit:
@@ -125,6 +125,13 @@ def rotation_vector(turn: Array) -> Array:
     sine = np.linalg.norm(twice, axis=1) / 2
     angle = np.arctan2(sine, (np.trace(turn, axis1=1, axis2=2) - 1) / 2)
     return np.asarray(twice * np.where(sine > 1e-12, angle / np.maximum(2 * sine, 1e-300), 0.5)[:, None])
+
+
+def has_tumbled(state: Any) -> bool:
+    """Whether a craft that turns has turned its back."""
+    from sailviz.propagate.body_steps import TUMBLED
+
+    return bool(state.counter[TUMBLED])
 
 
 def tumbled_once(state: Any, events: list[Event]) -> list[Event]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -42,6 +42,7 @@ class TurningPlan:
 
     turning: Turning
     motion: np.ndarray  # (SIZE - 7,) from the quaternion on
+    tumbled: bool = False  # before, in an earlier phase
 
     @property
     def body(self) -> Body:
@@ -149,12 +150,20 @@ def _film(given: FilmCoefficients | FilmOptics) -> Film:
 
 
 def begun_turning(
-    scene: Scene, turning: Turning | None, model: Model, under_sky: bool, begin: float, state: np.ndarray
+    scene: Scene,
+    turning: Turning | None,
+    model: Model,
+    under_sky: bool,
+    begin: float,
+    state: np.ndarray,
+    before: TurningPlan | None = None,
 ) -> TurningPlan | None:
-    """With the state at the start; state (7,) : position m, velocity m/s, mass kg. SceneError for a spin that is too
-    slow to be averaged."""
+    """With the state at the start; state (7,) : position m, velocity m/s, mass kg; before : as it turned where a phase
+    ended. SceneError for a spin that is too slow to be averaged."""
     if turning is None:
         return None
+    if before is not None:
+        return replace(before, turning=turning)
     said = scene.attitude
     assert isinstance(said, section.Moving)
     axes, rate = _axes_at_start(scene, said, model, under_sky, begin, state), np.zeros(3)
@@ -171,6 +180,14 @@ def begun_turning(
         rate = np.array(said.rates)
     motion[body_motion.RATE - body_motion.Q :][:3] = rate
     return TurningPlan(turning, motion)
+
+
+def taken_over(turning: Turning, before: TurningPlan) -> Turning:
+    """The craft of a phase after another: a mass that slid there, and that nothing slides any more, stays where it
+    is."""
+    if turning.body.slide_share != 0.0:
+        return turning
+    return turning._replace(body=turning.body._replace(slide_share=before.body.slide_share))
 
 
 def _axes_at_start(

@@ -15,6 +15,7 @@ from sailviz.scene.attitude import (
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.records import start_of, steering_of
 from sailviz.scene.device import NoDevice, PlasmaBrake, SolarSail
+from sailviz.scene.phases import attitude_in
 from sailviz.scene.quantities import spellings
 
 if TYPE_CHECKING:
@@ -34,7 +35,8 @@ def turning(scene: Scene) -> Faults:
     found = _known_craft(scene) + _mass(scene)
     if isinstance(attitude, Moving):
         found += _flown_alone(scene)
-    if isinstance(attitude, FreeAttitude | SpinAveragedAttitude) and scene.steering is not None:
+    held = any(phase.attitude is not None and phase.attitude.kind == "controlled" for phase in scene.phase)
+    if isinstance(attitude, FreeAttitude | SpinAveragedAttitude) and scene.steering is not None and not held:
         words = f"nothing follows it: the attitude is {attitude.kind}. Leave the steering out, or control the attitude"
         found.append(("steering.kind", words))
     if isinstance(attitude, ControlledAttitude):
@@ -42,16 +44,44 @@ def turning(scene: Scene) -> Faults:
     return found
 
 
+def turning_in_phases(scene: Scene) -> Faults:
+    """What keeps a craft from turning as its phases say."""
+    found: Faults = []
+    for i, phase in enumerate(scene.phase):
+        place = f"phase[{i}].attitude"
+        if phase.attitude is not None and not isinstance(scene.attitude, Moving):
+            words = "this craft stands as its steering says: a phase lets go or holds what turns by itself, [attitude]"
+            found.append((place, words))
+        elif phase.attitude is not None:
+            assert isinstance(scene.attitude, Moving)
+            try:
+                phase.attitude.of(scene.attitude)
+            except ValueError as error:
+                found.append((place, str(error)))
+        turns = attitude_in(scene, phase)
+        if isinstance(turns, FreeAttitude | SpinAveragedAttitude) and phase.steering is not None:
+            words = f"nothing follows it in this phase: the attitude is {turns.kind}"
+            found.append((f"phase[{i}].steering.kind", words))
+    return found
+
+
+def followed_in_phase(scene: Scene) -> Faults:
+    """What keeps a controller from following the steering, in the scene of a phase."""
+    found = _mass(scene) if isinstance(scene.attitude, Moving) else []
+    return found + _followed(scene, scene.attitude) if isinstance(scene.attitude, ControlledAttitude) else found
+
+
 def expected_of_turning(scene: Scene) -> Faults:
     """What is expected of a craft's turning is there to be expected."""
     found: Faults = []
+    attitudes = [scene.attitude, *(attitude_in(scene, phase) for phase in scene.phase)]
     shaped = isinstance(scene.device, SolarSail) and scene.device.shape is not None
     for i, item in enumerate(scene.expect):
         stem = spellings()[item.quantity].stem
         where = f"expect[{i}].quantity"
         if stem in OF_BODY and not isinstance(scene.attitude, Moving):
             found.append((where, f"{stem} {BELONGS}"))
-        elif stem in OF_ACTUATORS and not isinstance(scene.attitude, ControlledAttitude):
+        elif stem in OF_ACTUATORS and not any(isinstance(one, ControlledAttitude) for one in attitudes):
             found.append((where, f'{stem} belongs to actuators: attitude.kind "controlled"'))
         elif stem in OF_LIGHT and not shaped:
             found.append((where, f"{stem} is that of a solar sail with a shape"))
@@ -112,8 +142,6 @@ def _flown_alone(scene: Scene) -> Faults:
     ):
         if getattr(scene, name):
             found.append((f"{name}[0]", f"{what} {words}"))
-    if scene.phase:
-        found.append(("phase[0]", f"a flight in phases {words}"))
     if scene.propagation.integrator not in ("auto", "dop853"):
         found.append(("propagation.integrator", f'{scene.propagation.integrator} {words}: "dop853"'))
     if scene.device.drag_area == "attitude":

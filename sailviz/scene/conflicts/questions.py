@@ -69,12 +69,13 @@ OF_LATER_PHASES = (  # what no start decides
     low_orbit.tether,
     low_orbit.density_of_plasma,
     limits.steps,
+    attitude.followed_in_phase,
 )
 
 
 def conflicts(scene: Scene) -> Faults:
     """(place, sentence) of everything that fits its own section but not the others."""
     if scene.phase:
-        found = phases(scene)
+        found = phases(scene) + attitude.turning_in_phases(scene)
         return found + [fault for fault in asked_of_each(scene, QUESTIONS, OF_LATER_PHASES) if fault not in found]
     return [fault for question in QUESTIONS for fault in question(scene)]

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 OF_LIGHT = ("light_torque",)
 OF_ACTUATORS = ("control_torque", "wheel_momentum")
 OF_BODY = ("body_rate", "nutation", "wheel_momentum")  # quantities that only a craft that turns has
+DRAWN = "attitudes, rates and inertias are drawn by a sweep, whose flights turn each by itself"
 BELONGS = 'belongs to a craft that turns: attitude.kind "free", "controlled" or "spin-averaged"'
 
 
@@ -92,7 +93,10 @@ def _known_craft(scene: Scene) -> Faults:
     attitude, device = scene.attitude, scene.device
     assert attitude is not None
     if scene.place is not None:
-        return [("attitude.kind", "a craft that turns has one device, in no list of several")]
+        words = (
+            "a craft that turns has one device, in no list of several: no key says where on it others push and turn it"
+        )
+        return [("attitude.kind", words)]
     if isinstance(device, PlasmaBrake):
         return [("attitude.kind", "a tether is no rigid body: its attitude is that of its steering")]
     if isinstance(attitude, PrescribedAttitude):
@@ -141,11 +145,12 @@ def _flown_alone(scene: Scene) -> Faults:
         ("approximation", "an analytic solution"),
     ):
         if getattr(scene, name):
-            found.append((f"{name}[0]", f"{what} {words}"))
+            more = f"; {DRAWN}" if name == "ensemble" else ""
+            found.append((f"{name}[0]", f"{what} {words}{more}"))
     if scene.propagation.integrator not in ("auto", "dop853"):
         found.append(("propagation.integrator", f'{scene.propagation.integrator} {words}: "dop853"'))
     if scene.device.drag_area == "attitude":
-        found.append(("device.drag_area", f'"attitude" {words}: give shape.air, or an area'))
+        found.append(("device.drag_area", f'"attitude" {words}: give an area, or shape.air'))
     if start_of(scene).held:
         found.append(("start.kind", f"{scene.start.kind}: an orbit held by its steering {words}"))
     return found

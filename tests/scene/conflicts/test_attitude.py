@@ -90,9 +90,9 @@ def attitude(**parts):
         ({"propagation": {"integrator": "collocation"}}, "propagation.integrator", "dop853"),
         ({"approximation": [{"kind": "first-order"}]}, "approximation[0]", "an analytic solution knows"),
         (
-            {"phase": [{"name": "a", "until": "time_d = 0.01"}, {"name": "b"}]},
-            "phase[0]",
-            "a flight in phases knows",
+            {"phase": [{"name": "a", "until": "time_d = 0.01"}, {"name": "b", "attitude": {"kind": "controlled"}}]},
+            "phase[1].attitude",
+            "needs control",
         ),
         ({"expect": [{"quantity": "wheel_momentum_N_m_s", "at": "end", "value": 1, "within": 1}]}, "expect[0].quantity",
          "belongs to actuators"),

@@ -226,19 +226,26 @@ class ControlledAttitude(StartsTurned):
 
     @model_validator(mode="after")
     def _goes_together(self) -> Self:
-        for kind in ("wheels", "sliding-mass"):
-            if sum(one.kind == kind for one in self.actuators) > 1:
-                raise wrong(f"actuators has several of kind {kind}: one is known")
-        devices = [one for one in self.actuators if isinstance(one, Reflectivity)]
-        if isinstance(self.control, SpinAxisControl):
-            others = sorted({one.kind for one in self.actuators if not isinstance(one, Reflectivity)})
-            if others:
-                raise wrong(f'control of kind "spin-axis" is that of switched reflectivity, not of {", ".join(others)}')
-            if self.rates is None or self.rates[2] == 0:
-                raise wrong('control of kind "spin-axis" needs rates about z, a spin')
-        elif devices:
-            raise wrong('switched reflectivity tilts a spin axis: control.kind = "spin-axis"')
+        words = clash(self)
+        if words:
+            raise wrong(words)
         return self
+
+
+def clash(one: ControlledAttitude) -> str:
+    """Why a controller and its actuators do not go together; "" where they do."""
+    for kind in ("wheels", "sliding-mass"):
+        if sum(each.kind == kind for each in one.actuators) > 1:
+            return f"actuators has several of kind {kind}: one is known"
+    if isinstance(one.control, SpinAxisControl):
+        others = sorted({each.kind for each in one.actuators if not isinstance(each, Reflectivity)})
+        if others:
+            return f'control of kind "spin-axis" is that of switched reflectivity, not of {", ".join(others)}'
+        if one.rates is None or one.rates[2] == 0:
+            return 'control of kind "spin-axis" needs rates about z, a spin'
+    elif any(isinstance(each, Reflectivity) for each in one.actuators):
+        return 'switched reflectivity tilts a spin axis: control.kind = "spin-axis"'
+    return ""
 
 
 class PhaseAttitude(Section):
@@ -275,7 +282,10 @@ class PhaseAttitude(Section):
             raise ValueError(f"needs {missing}, which the scene's [attitude] has none of either")
         given = same | {"kind": "controlled", "control": control, "actuators": actuators}
         found = ControlledAttitude.model_construct(**given)
-        return found._goes_together()  # as the scene's own
+        words = clash(found)
+        if words:
+            raise ValueError(words)
+        return found
 
 
 Attitudes = Annotated[

@@ -207,7 +207,7 @@ def _columns(legs: list[Flown], setting: Setting) -> dict[str, np.ndarray]:
     wheels that are not there hold nothing."""
     found: dict[str, np.ndarray] = {}
     for leg in legs:
-        turns = [] if leg.plan.turning is None else leg.plan.turning.motion
+        turns = () if leg.plan.turning is None else tuple(leg.plan.turning.motion)
         state = np.array([*leg.plan.position, *leg.plan.velocity, leg.plan.seventh, *turns])[:, None]
         one = observed(leg.plan, setting, np.array([leg.plan.begin]), state, 0, np.inf)
         for name, values in one.environment.items():

@@ -9,7 +9,7 @@ import rerun.blueprint as rrb
 from rerun.blueprint.archetypes import PlotBackground, TextLogColumns
 from rerun.blueprint.encodings import TextLogColumn, TextLogColumnKind, TimelineColumn
 
-from sailviz.recording.drawing.arrival_plane import BOX, Arrival
+from sailviz.recording.drawing.arrival_plane import BOX
 from sailviz.recording.drawing.layout import Layout, Space, Span
 from sailviz.recording.drawing.plot_column import PlotView
 from sailviz.recording.drawing.style import BACKGROUND
@@ -57,7 +57,8 @@ def selection(turn: tuple[float, float] | None) -> rrb.components.AbsoluteTimeRa
 def left(layout: Layout) -> rrb.Container:
     """The flight from several eyes, over the words."""
     spaces: list[View] = [space_view(layout, space) for space in layout.spaces]
-    spaces += [arrival_view(arrival) for arrival in layout.arrivals]
+    spaces += [plane_view(arrival.name, arrival.path) for arrival in layout.arrivals]
+    spaces += [] if layout.heat is None else [plane_view(*layout.heat)]
     words = rrb.Tabs(
         rrb.TextDocumentView(origin="/about", name="About"),
         rrb.TextLogView(origin="/log", name="Events", columns=event_columns(layout)),
@@ -120,13 +121,13 @@ def space_view(layout: Layout, space: Space) -> rrb.Spatial3DView:
     )
 
 
-def arrival_view(arrival: Arrival) -> rrb.Spatial2DView:
-    """A plane of arrival."""
+def plane_view(name: str, path: str) -> rrb.Spatial2DView:
+    """A plane with axes of its own: of arrival, or of heat over distance."""
     (x, y), margin = BOX, 1.12
     return rrb.Spatial2DView(
-        name=arrival.name,
-        origin=arrival.path,
-        contents=[f"+ {arrival.path}/**"],
+        name=name,
+        origin=path,
+        contents=[f"+ {path}/**"],
         background=BACKGROUND,
         visual_bounds=rrb.VisualBounds2D(x_range=[-margin * x, margin * x], y_range=[-margin * y, margin * y]),
     )

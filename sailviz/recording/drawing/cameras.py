@@ -55,7 +55,7 @@ def seen(cosine: np.ndarray, film: bool, open: bool = False) -> np.ndarray:
     a wheel from both. open : there is something to be seen on its surface."""
     if open:
         lit = cosine if film else np.abs(cosine)
-        found = np.interp(lit, [-1, -0.2, 0, 0.2, 0.45, 0.6, 0.8, 1], [-0.5, -0.5, -0.3, 0.3, 1, 1, 0.75, 0.4])
+        found = np.interp(lit, [-1, -0.2, 0, 0.2, 0.35, 0.5, 0.7, 1], [-0.5, -0.5, -0.3, 0.4, 1, 1, 0.7, 0.3])
     elif film:
         found = np.interp(cosine, [-1, -0.2, 0, 0.12, 0.3, 0.75, 1], [-0.25, -0.3, -0.1, 0.75, 1, 1, 0.7])
     else:

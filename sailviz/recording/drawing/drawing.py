@@ -27,6 +27,9 @@ from sailviz.recording.drawing.filled import filled_story
 from sailviz.recording.drawing.flight_curves import FlightCurves, curves_beside, log_flight_curves
 from sailviz.recording.drawing.flight_words import about_together, log_now_together, span_of
 from sailviz.recording.drawing.flights import Flight, story_beside
+from sailviz.recording.drawing.heat_plane import NAME as HEAT
+from sailviz.recording.drawing.heat_plane import PATH as HEAT_PATH
+from sailviz.recording.drawing.heat_plane import heat_of, log_heat
 from sailviz.recording.drawing.landmarks import VIOLATION
 from sailviz.recording.drawing.layout import Layout, Space, Span
 from sailviz.recording.drawing.lit_shape import lit_words
@@ -190,6 +193,10 @@ class Drawing:
                 layout.spaces.insert(0, axis)
             else:
                 layout.axis = axis
+        heat = heat_of(story)
+        if heat is not None:
+            log_heat(picture, story, heat)
+            layout.heat = (HEAT, HEAT_PATH)
         return layout, notes, aside
 
     def _layout(

@@ -38,6 +38,7 @@ class Layout:
     plots: list[PlotView] = field(default_factory=list)  # most telling first
     lanes: list[str] = field(default_factory=list)
     arrivals: tuple[Arrival, ...] = ()  # planes in which ensembles are seen
+    heat: tuple[str, str] | None = None  # name and path of the plane of temperature over distance
     bars: bool = False  # whether histograms stand below the curves
     spans: dict[str, Span] = field(default_factory=dict)
     timelines: tuple[str, ...] = ("sim_time", "step")

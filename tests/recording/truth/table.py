@@ -19,6 +19,7 @@ from . import (
     craft,
     earth,
     ensembles,
+    heat,
     landmarks,
     lit,
     low,
@@ -276,6 +277,15 @@ AXIS = (
     ),
 )
 
+HEAT = (
+    Claim("/heat/axes", "LineStrips2D", "their own numbers", "-", "numbers", heat.axes),
+    Claim("/heat/axes/names", "Points2D", "their own numbers", "-", "1", heat.names),
+    Claim("/heat/axes/numbers", "Points2D", "their ticks", "-", "au, K", heat.numbers),
+    Claim("/heat/way", "LineStrips2D", "/state position_m, /film temperature_K", "-", "au, K", heat.way),
+    Claim("/heat/limit", "LineStrips2D", "/scene resolved", "-", "K", heat.limit),
+    Claim("/heat/now", "Points2D", "/state position_m, /film", "-", "au, K", heat.now),
+)
+
 SWUNG = "Measurements Scalars SeriesLines"
 NAMED = {
     "distance": ("/state, /elements", plots.distance),
@@ -371,7 +381,7 @@ BESIDES = tuple(
     if not row.pattern.endswith(("/dot", "/plume", "/panels", "/nozzle", "/hub", "sheath"))
     and not row.pattern.endswith(("/tethers", "/rim", "/disc"))
 )
-TABLE = (*SYSTEM, *EARTH, *LOW, *CRAFTS, *CLOSE_UP, *AXIS, *ENSEMBLES, *TOGETHER, *BESIDES, *CURVES)
+TABLE = (*SYSTEM, *EARTH, *LOW, *CRAFTS, *CLOSE_UP, *AXIS, *HEAT, *ENSEMBLES, *TOGETHER, *BESIDES, *CURVES)
 NUMBERS = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/approximation", "/ensemble", "/events")
 NUMBERS = (
     *NUMBERS,

@@ -120,7 +120,7 @@ def kind_of(device: str) -> str:
 
 
 def launch_window(pen: Pen, *panels: Axes) -> None:
-    """Flight time over the date of departure, one panel per planet."""
+    """Flight time over the date of departure, one panel per body."""
     for panel, (target, (dates, days)), color in zip(
         panels, transfer_data.launch_windows().items(), pen.style.series, strict=False
     ):

@@ -104,8 +104,8 @@ def place(name: str) -> Place:
 
 
 def _by_row(name: str, row: dict[str, str]) -> Place:
-    angles = (float(np.radians(float(row[key]))) for key in ("i", "node", "argument"))
-    orbit = Elements(float(row["a_au"]) * AU, float(row["e"]), *angles, 0.0)
+    i, node, argument = (float(np.radians(float(row[key]))) for key in ("i", "node", "argument"))
+    orbit = Elements(float(row["a_au"]) * AU, float(row["e"]), i, node, argument, 0.0)
     body = SmallBodyOrbit(name, orbit, float(np.radians(float(row["mean_anomaly"]))), float(row["epoch"]))
     return Place(name, orbit, body=body, source=row["source"])
 

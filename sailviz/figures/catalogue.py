@@ -219,7 +219,7 @@ CATALOGUE = {
     ),
     "launch-window": Entry(
         "When to leave for a rendezvous: ideal sail of 1 mm/s², planets and asteroids where they are",
-        f"{OURS}; mean elements, JPL's of asteroids, planets' pull neglected; upper bounds; dotted: edge-on until a better day",
+        f"{OURS}; mean elements, of asteroids JPL's; planets' pull left out; upper bounds; dotted: edge-on until later",
         (12, 9.6),
         (2, 2),
         "transfers",

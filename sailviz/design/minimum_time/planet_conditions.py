@@ -52,6 +52,7 @@ from sailviz.design.minimum_time.unknowns import (
 from sailviz.elements import elements
 
 SOLVED = 1e-9  # largest miss of a solution, au and 29.78 km/s
+APART = 10 * SPREAD  # s between speeds that are differenced: moments are rounded to 1e-7 s, the rest as of SPREAD
 STRAYS = 0.02  # of the flight time, from what the slope makes of it: more is another family
 SHORTEST_STEP = 2 * DAY  # s, of the departure of a flight that is handed on
 NEARBY = 15  # steps of a search that begins next to its solution
@@ -124,9 +125,9 @@ class Meeting:
     def motion(self, body: MovingBody, time: float) -> np.ndarray:
         """(6,) velocity and acceleration of a body in units of au and mu = 1 at a time in s after the epoch; of a
         planet as its mean elements move it, which is not quite Kepler's motion."""
-        y = self.state(body, time + SPREAD * np.arange(-2.0, 3.0))
+        y = self.state(body, time + APART * np.arange(-2.0, 3.0))
         v = y[:, VELOCITY]
-        return np.concatenate([v[2], (v[0] - 8 * v[1] + 8 * v[3] - v[4]) / (12 * SPREAD / TIME_UNIT)])
+        return np.concatenate([v[2], (v[0] - 8 * v[1] + 8 * v[3] - v[4]) / (12 * APART / TIME_UNIT)])
 
     def ends(self, unknowns: Unknowns, tolerance: float = TIGHT) -> Ends:
         """Both sides of the condition for a free date, lam as in the unknowns."""

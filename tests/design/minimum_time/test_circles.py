@@ -185,7 +185,7 @@ def test_targets_out_of_reach_are_named_with_the_nearest_circle_reached(monkeypa
     assert np.isnan(found.costates).all()
     said = re.search(r"the nearest circle reached has (.*) au, after (.*) d; (.*) mm/s² reach", found.reason)
     radius, days = float(said[1]), float(said[2])
-    assert MARS**0.75 < radius < MARS
+    assert MARS**0.5 < radius < MARS
     assert circle_to_circle(AU, radius * AU, "ideal", 2e-3).time / DAY == pytest.approx(days, rel=1e-5)
     assert 2 < float(said[3]) < 4
     assert f"aim no farther than {radius:.6g} au" in found.ending.advice
@@ -210,6 +210,10 @@ def _blindly(monkeypatch, device, ac, target, steps):
         there = flight.radius == target and np.array_equal(flight.sail.parameters, sail.parameters)
         return replace(found, extremals=()) if there else found
 
+    detours = circles._detours
+    monkeypatch.setattr(
+        circles, "_detours", lambda *rest: [d for d in detours(*rest) if d.radius_at or d.strength_at][::3]
+    )
     for tier in ("SECOND", "LAST"):
         monkeypatch.setattr(circles, tier, circles.FIRST)
     monkeypatch.setattr(circles, "search", blind)

@@ -217,6 +217,14 @@ CATALOGUE = {
         "transfers",
         "films",
     ),
+    "throttle": Entry(
+        "To Jupiter at partial voltage: an electric sail of 1 mm/s² between full thrust and coast",
+        f"{OURS}; scene transfers/earth-jupiter-electric-sail, fastest flight found; dotted: the two orbits",
+        (13, 5.4),
+        (1, 2),
+        "transfers",
+        "throttle",
+    ),
     "launch-window": Entry(
         "When to leave for a rendezvous: ideal sail of 1 mm/s², planets and asteroids where they are",
         f"{OURS}; mean elements, of asteroids JPL's; planets' pull left out; upper bounds; dotted: edge-on until later",

@@ -7,9 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.dates import DateFormatter, MonthLocator
 
+from sailviz.constants import AU, DAY
 from sailviz.figures import transfer_data
 from sailviz.figures.transfer_data import COMPARED, OVER_ACCELERATION, TARGETS
 from sailviz.propulsion.solar_sail import FILMS
+from sailviz.simulation import simulate
 from sailviz.steering.optimal import analytic_pitch, optimal_pitch
 
 if TYPE_CHECKING:
@@ -117,6 +119,29 @@ def kind_of(device: str) -> str:
     if device.startswith("electric"):
         return "electric sail"
     return "ideal film" if device == "ideal" else "real film"
+
+
+def throttle(pen: Pen, path: Axes, share: Axes) -> None:
+    """The fastest flight of an electric sail to Jupiter: where it flies, and its throttle over time, arc by arc."""
+    run = simulate("transfers/earth-jupiter-electric-sail")
+    place, days, value = run.position / AU, run.time / DAY, run.environment["throttle"]
+    colors: dict[str, str] = {}
+    for phase in run.setting.phases:
+        color = colors.setdefault(phase.name, pen.style.series[len(colors)])
+        inside = (run.time >= phase.start) & (run.time <= phase.end)
+        path.plot(*place[inside, :2].T, color=color)
+        own = inside & (run.time < phase.end) if phase is not run.setting.phases[-1] else inside
+        share.plot(days[own], value[own], color=color)
+        middle = 0.5 * (phase.start + phase.end) / DAY
+        share.text(middle, 1.04, phase.name, color=color, ha="center", fontsize=9)
+    turn = np.linspace(0, 2 * np.pi, 361)
+    for radius in np.linalg.norm(place[[0, -1]], axis=1):
+        path.plot(radius * np.cos(turn), radius * np.sin(turn), color=pen.style.ink, linestyle=DOTTED, linewidth=1.2)
+    path.plot(0, 0, marker="o", color=pen.style.ink)
+    path.set(xlabel="x [au]", ylabel="y [au]", aspect="equal")
+    path.set_title("seen from the north of the ecliptic")
+    share.set(xlabel="time [d]", ylabel="share of the full thrust", xlim=(0, days[-1]), ylim=(-0.03, 1.12))
+    share.set_title("throttle")
 
 
 def launch_window(pen: Pen, *panels: Axes) -> None:

@@ -128,7 +128,7 @@ class Transfer:
             ways = "the only flight" if self.solutions == 1 else f"the fastest of {self.solutions} flights"
             return (
                 f"Best found: {self.time / DAY:.4f} d, {ways} of those followed from near circles, {self.starts} in "
-                "all, that arrived; that none is faster is likely, not proven."
+                f"all, that arrived; that none is faster is likely, not proven.{self.ending.mark}"
             )
         others = "the only extremal" if self.solutions == 1 else f"the fastest of {self.solutions} extremals"
         return (

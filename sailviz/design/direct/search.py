@@ -98,6 +98,8 @@ class DirectFlight:
     @property
     def digits(self) -> int:
         """Decimals of the flight time in days that are confirmed, negative where whole days are not."""
+        if not np.isfinite(self.error):
+            return 0
         return int(np.clip(np.floor(-np.log10(max(self.error / DAY, 1e-12))), -3, 6))
 
     @property

@@ -102,7 +102,9 @@ def log_axis(picture: Picture, story: Story) -> tuple[Space, dict[str, Span]]:
         color = style.QUANTITY["momentum"]
         log_direction(picture, story, names, "momentum", "angular momentum", color, MOMENTUM * spun)
     eye = eye_of(story, axis, light, spun, turn)
-    at, target = cameras.fit(1.08 * sphere_points(), eye, view[0] / view[1], 0.94)
+    tips = [MOMENTUM * spun, *([] if light is None else [LIGHT * light])]
+    seen = [1.08 * sphere_points(), *(1.08 * seen_along(story, vectors, turn) for vectors in tips)]
+    at, target = cameras.fit(np.concatenate(seen), eye, view[0] / view[1], 0.94)
     origin = "/axis/pan" if np.any(turn) else "/axis"
     camera = Camera(WORD, origin, tuple(at.tolist()), tuple(target.tolist()))
     names.write(picture, camera, turn)
@@ -190,13 +192,10 @@ def turn_with(light: np.ndarray | None, count: int) -> np.ndarray:
 
 def eye_of(story: Story, axis: np.ndarray, light: np.ndarray | None, spun: np.ndarray, turn: np.ndarray) -> np.ndarray:
     """The direction (3,) from which the trace is in front, and the arrows are seen at a slant."""
-    some, eyes = story.moments, cameras.directions(ELEVATIONS)
+    eyes = cameras.directions(ELEVATIONS)
 
     def followed(vectors: np.ndarray) -> np.ndarray:
-        angle = np.broadcast_to(turn, (len(vectors),))
-        c, s = np.cos(angle), np.sin(angle)
-        x, y, z = vectors.T
-        return np.asarray(np.stack([c * x + s * y, c * y - s * x, z], 1)[some])
+        return seen_along(story, vectors, turn)
 
     front = eyes @ followed(axis).T
     score = np.interp(front, [-1.0, 0.0, 0.3, 0.5, 0.75, 1.0], [-1.0, -0.3, 0.8, 1.0, 1.0, 0.3]).mean(axis=1)
@@ -206,6 +205,13 @@ def eye_of(story: Story, axis: np.ndarray, light: np.ndarray | None, spun: np.nd
         score = score + (0.5 * cameras.across(eyes, shines, 0.8) + 0.2 * (right @ shines.T)).mean(axis=1)
     best: np.ndarray = eyes[np.argmax(score)]
     return best
+
+
+def seen_along(story: Story, vectors: np.ndarray, turn: np.ndarray) -> np.ndarray:
+    """Vectors (n, 3) at the moments by which a camera is judged, for an eye that has gone round by `turn` (n,) rad."""
+    c, s = np.cos(turn), np.sin(turn)
+    x, y, z = vectors.T
+    return np.asarray(np.stack([c * x + s * y, c * y - s * x, z], 1)[story.moments])
 
 
 def sphere_points() -> np.ndarray:

@@ -98,11 +98,14 @@ def transfer(
         say_if_compiling(quiet or as_json)
         start, aim = place(origin), asked.aim(target)
         if as_table:
+            assert aim is not None, "check has seen that there is one"
             _table(start, aim, sails, time_limit, quiet, as_json)
             return
-        with _effort(f"{start.name} to {aim.name}", time_limit, quiet or as_json) as effort:
+        with _effort(
+            start.name if aim is None else f"{start.name} to {aim.name}", time_limit, quiet or as_json
+        ) as effort:
             found = find(
-                start, aim, sails[0], acceleration * 1e-3,
+                start, aim, sails[0], acceleration * 1e-3, end=asked.end, within=asked.within,
                 orbits=asked.orbits, departure=asked.departure, starts=asked.starts, dates=asked.dates,
                 method=asked.method, limits=asked.limits, effort=effort,
             )  # fmt: skip

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from sailviz.cli.transfer_ends_in_words import heading, name_of_target, rows_of_end, values_of_end
 from sailviz.constants import AU, DAY
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ def direct_words(found: Solution, flight: DirectFlight) -> Iterator[str]:
     from sailviz.design.minimum_time.state_costate import TIME_UNIT
     from sailviz.transfers import device_words
 
-    yield f"{found.origin.name} to {found.target.name}, between circles in one plane"
+    yield f"{found.origin.name} to {name_of_target(found)}, between circles in one plane"
     yield f"{device_words(flight.device)}, {flight.characteristic_acceleration * 1e3:g} mm/s² at 1 au"
     if not flight.feasible:
         yield from _without_an_answer(flight.reason, flight.ending)
@@ -73,9 +74,12 @@ def words(found: Solution) -> Iterator[str]:
     ways = {
         "circles": "between circles in one plane",
         "orbits": "between orbits in space, both anomalies free",
-        "rendezvous": f"to meet {found.target.name} where it is",
+        "rendezvous": f"to meet {name_of_target(found)} where it is",
     }
-    yield f"{found.origin.name} to {found.target.name}, {ways[found.kind]}"
+    if found.kind == "end":
+        yield heading(found)
+    else:
+        yield f"{found.origin.name} to {name_of_target(found)}, {ways[found.kind]}"
     yield f"{craft}, {flight.characteristic_acceleration * 1e3:g} mm/s² at 1 au"
     if not flight.feasible:
         yield from _without_an_answer(flight.reason, flight.ending)
@@ -87,10 +91,13 @@ def words(found: Solution) -> Iterator[str]:
         anomalies = f"{np.degrees(flight.departure_anomaly):.4f}° and {np.degrees(flight.arrival_anomaly):.4f}°"
         rows += [("true anomalies", f"{anomalies} at departure and arrival")]
     rows += [("costates", " ".join(f"{x:.10g}" for x in flight.costates))]
-    of = "radius, radial and transverse speed; mu = r0 = 1" if found.kind == "circles" else "position, velocity; 1 au"
+    planar = found.kind in ("circles", "end")
+    of = "radius, radial and transverse speed; mu = r0 = 1" if planar else "position, velocity; 1 au"
     scaled = f"H = {flight.hamiltonian:.4f}" if isinstance(flight, Rendezvous) else "H = +1"
     rows += [("", f"of {of}, {scaled}: minus the days won per unit, in {_unit(found):.4f} d")]
-    position, _, switches = path_of(flight)
+    position, velocity, switches = path_of(flight)
+    if found.kind == "end":
+        rows += rows_of_end(found, position, velocity)
     rows += [("closest to the Sun", f"{np.linalg.norm(position, axis=1).min() / AU:.4f} au")]
     if len(switches):
         rows += [("thrust switches at", ", ".join(f"{t / DAY:.3f}" for t in switches) + " d")]
@@ -167,7 +174,7 @@ def _unit(found: Solution) -> float:
     """The canonical unit of time, d."""
     from sailviz.design.minimum_time.state_costate import TIME_UNIT
 
-    radius = found.origin.orbit.semi_major_axis / AU if found.kind == "circles" else 1.0
+    radius = found.origin.orbit.semi_major_axis / AU if found.kind in ("circles", "end") else 1.0
     return radius**1.5 * TIME_UNIT / DAY
 
 
@@ -188,7 +195,7 @@ def summary(found: Solution) -> dict[str, Any]:
     values: dict[str, Any] = {
         "kind": found.kind,
         "from": found.origin.name,
-        "to": found.target.name,
+        "to": name_of_target(found),
         "sail": flight.device,
         "characteristic_acceleration_mm_s2": flight.characteristic_acceleration * 1e3,
         "found": flight.feasible,
@@ -208,6 +215,8 @@ def summary(found: Solution) -> dict[str, Any]:
     }
     if isinstance(flight, Transfer):
         values |= {"method": flight.method}
+    if found.kind == "end":
+        values |= values_of_end(found)
     if isinstance(flight, Rendezvous):
         values |= {"departure": str(flight.departure), "arrival": str(flight.arrival)}
         values |= {"slope_d_per_d": _known(flight.slope), "mind": list(found.notes)}
@@ -219,7 +228,7 @@ def direct_summary(found: Solution, flight: DirectFlight) -> dict[str, Any]:
     return {
         "kind": found.kind,
         "from": found.origin.name,
-        "to": found.target.name,
+        "to": name_of_target(found),
         "sail": flight.device,
         "characteristic_acceleration_mm_s2": flight.characteristic_acceleration * 1e3,
         "found": flight.feasible,

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
     from sailviz.design.direct import Limits
     from sailviz.transfers import Place
+    from sailviz.transfers.ends import Bounds, End
 
 _WHITHER = (
     click.option("--orbits", is_flag=True, help="In space, between the planets' elliptic orbits, both anomalies free."),
@@ -67,10 +68,51 @@ _WHITHER = (
     click.option("--starts", type=click.IntRange(1, 200), help="Departure points tried with --orbits (24)."),
 )
 
+_ENDS = (
+    click.option("--flyby", is_flag=True, help="Pass TO, or the circle of --radius-au, at whatever speed."),
+    click.option(
+        "--distance-au",
+        type=Number(0, 1e3, "au", above=True),
+        metavar="AU",
+        help="As far from the Sun as this instead of TO, at whatever speed.",
+    ),
+    click.option(
+        "--escape",
+        type=Number(0, 1e3, "km/s"),
+        metavar="KM_S",
+        help="Escape from the Sun with this excess speed instead of TO.",
+    ),
+    click.option(
+        "--across-km-s",
+        type=Number(0, 1e3, "km/s", above=True),
+        metavar="KM_S",
+        help="At --radius-au, move across the Sun line at this speed instead of that of the circle.",
+    ),
+    click.option(
+        "--perihelion-au",
+        type=Number(0, 1e3, "au", above=True),
+        metavar="AU",
+        help="Come no nearer to the Sun than this; with --flyby, --distance-au or --escape.",
+    ),
+    click.option(
+        "--hottest-K",
+        "hottest_k",
+        type=Number(0, 5e3, "K", above=True),
+        metavar="K",
+        help="Turn the film away from the Sun where it would become hotter; jpl-1978 and jpl-2015.",
+    ),
+    click.option(
+        "--revolutions",
+        type=Number(0, 100, above=True),
+        metavar="N",
+        help="Sweep exactly so many revolutions about the Sun.",
+    ),
+)
+
 
 def question_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """The options of a Question."""
-    for option in reversed(_WHITHER):
+    for option in reversed([*_WHITHER, *_ENDS]):
         command = option(command)
     return command
 
@@ -90,6 +132,13 @@ class Question:
     method: str
     cone_deg: float | None
     slew_deg_day: float | None
+    flyby: bool
+    distance_au: float | None
+    escape: float | None
+    across_km_s: float | None
+    perihelion_au: float | None
+    hottest_k: float | None
+    revolutions: float | None
 
     @classmethod
     def taken(cls, options: dict[str, Any]) -> Question:
@@ -98,26 +147,70 @@ class Question:
 
     def check(self, target: str | None, sails: tuple[str, ...], as_table: bool, output: str | None) -> None:
         """ValueError for whatever does not go together, one sentence a line."""
-        faults = [*self._about_the_aim(target), *self._about_the_date(), *self._about_tables(sails, as_table, output)]
+        faults = [
+            *self._about_the_aim(target), *self._about_the_date(), *self._about_limits(),
+            *self._about_tables(sails, as_table, output),
+        ]  # fmt: skip
         if faults:
             raise ValueError("\n".join(faults))
 
+    @property
+    def _instead_of_an_orbit(self) -> list[str]:
+        """Ends that are no orbit, as they were said."""
+        said = {"--distance-au": self.distance_au, "--escape": self.escape}
+        return [word for word, value in said.items() if value is not None]
+
     def _about_the_aim(self, target: str | None) -> Iterator[str]:
-        named = target is not None or self.body_file is not None
-        if named == (self.radius_au is not None):
-            yield "Say where to: a planet, a small body, or a circle by --radius-au."
+        ends = self._instead_of_an_orbit
+        aims = [
+            *(["TO"] if target is not None or self.body_file is not None else []),
+            *(["--radius-au"] if self.radius_au is not None else []),
+            *ends,
+        ]
+        if not aims:
+            yield "Say where to: a planet, a small body, a circle by --radius-au, --distance-au or --escape."
+        elif len(aims) > 1:
+            yield f"Say where to once: {' and '.join(aims)} are {len(aims)} ends."
+        if self.flyby and ends:
+            yield f"--flyby passes TO or the circle of --radius-au; {ends[0]} is an end of its own."
         if self.inclination_deg is not None and self.radius_au is None:
             yield "--inclination-deg is that of a circle: give --radius-au with it."
+        if self.orbits and (self.flyby or ends):
+            yield f"--orbits ends on an orbit: {' and '.join(ends or ['--flyby'])} does not go with it."
+        if self.inclination_deg and (self.flyby or self.across_km_s is not None):
+            yield "--flyby and --across-km-s are for the plane of departure: no --inclination-deg."
+        if self.across_km_s is not None and (self.radius_au is None or self.flyby):
+            yield "--across-km-s is the speed at --radius-au: give that with it, and no --flyby."
 
     def _about_the_date(self) -> Iterator[str]:
-        if self.date is not None and (self.orbits or self.radius_au is not None):
-            yield "--date meets a body where it is: neither --orbits nor --radius-au go with it."
+        ends = self._instead_of_an_orbit
+        others = [word for word, said in {"--orbits": self.orbits, "--radius-au": self.radius_au}.items() if said]
+        if self.date is not None and self.flyby:
+            yield "--flyby passes the circle of TO, wherever the body is: no --date."
+        if self.date is not None and (others or ends):
+            yield f"--date meets a body where it is: {' and '.join([*others, *ends])} does not go with it."
         if self.window is not None and self.date is None:
             yield "--window counts its days from a --date."
 
+    def _about_limits(self) -> Iterator[str]:
+        limits = {
+            "--perihelion-au": self.perihelion_au,
+            "--hottest-K": self.hottest_k,
+            "--revolutions": self.revolutions,
+        }
+        said = [word for word, value in limits.items() if value is not None]
+        planar = not (self.orbits or self.inclination_deg or self.date is not None)
+        if said and not planar:
+            yield f"{' and '.join(said)}: for flights in one plane, without --orbits, --inclination-deg or --date."
+        if self.perihelion_au is not None and not (self.flyby or self._instead_of_an_orbit):
+            yield "--perihelion-au is kept on the way past a circle or out: give --flyby, --distance-au or --escape."
+        if self.perihelion_au is not None and self.revolutions is not None:
+            yield "--perihelion-au and --revolutions are not looked for at once: give one of them."
+
     def _about_tables(self, sails: tuple[str, ...], as_table: bool, output: str | None) -> Iterator[str]:
-        if as_table and (self.orbits or self.date or output is not None or self.inclination_deg):
-            yield "--table shows flights between circles: no --orbits, --date, --inclination-deg or -o."
+        ends = self.flyby or self._instead_of_an_orbit or self.within.any or self.across_km_s
+        if as_table and (self.orbits or self.date or output is not None or self.inclination_deg or ends):
+            yield "--table shows flights between circles: no other ends or limits, no --orbits, --date or -o."
         if as_table and (self.method == "direct" or self.limited):
             yield "--table shows flights of the indirect method: no --method direct, --cone-deg or --slew-deg-day."
         if len(sails) > 1 and not as_table:
@@ -138,15 +231,37 @@ class Question:
             turn_rate=None if self.slew_deg_day is None else math.radians(self.slew_deg_day) / DAY,
         )
 
-    def aim(self, target: str | None) -> Place:
-        """The place aimed at."""
+    @property
+    def end(self) -> End | None:
+        """What the flight comes to, None where that is an orbit or a planet."""
+        from sailviz.transfers.ends import Arrival, Distance, Escape, FlyBy
+
+        if self.distance_au is not None:
+            return Distance(self.distance_au * AU)
+        if self.escape is not None:
+            return Escape(self.escape * 1e3)
+        if self.across_km_s is not None and self.radius_au is not None:
+            return Arrival(self.radius_au * AU, self.across_km_s * 1e3)
+        return FlyBy() if self.flyby else None
+
+    @property
+    def within(self) -> Bounds:
+        """What it keeps to."""
+        from sailviz.transfers.ends import Bounds
+
+        near = None if self.perihelion_au is None else self.perihelion_au * AU
+        return Bounds(near, self.hottest_k, self.revolutions)
+
+    def aim(self, target: str | None) -> Place | None:
+        """The place aimed at, where there is one."""
         from sailviz.transfers import circle, place, place_of_file
 
         if self.body_file is not None:
             return place_of_file(self.body_file, target)
         if target is not None:
             return place(target)
-        assert self.radius_au is not None, "check has seen that there is one of the two"
+        if self.radius_au is None or self.across_km_s is not None:
+            return None
         return circle(self.radius_au * AU, math.radians(self.inclination_deg or 0.0))
 
     @property

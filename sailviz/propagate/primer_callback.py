@@ -12,7 +12,7 @@ from sailviz.compiled import STATE, called, entry, inlined
 from sailviz.propagate.callbacks import Callback, callback
 from sailviz.propagate.parameters import PARAMETERS, array_at, record_at
 from sailviz.steering import attitude
-from sailviz.steering.optimal import steer, towards_primer
+from sailviz.steering.optimal import steer_cool, towards_primer
 from sailviz.steering.primers import EDGE, locally_optimal_primer, locally_optimal_readiness, lyapunov_primer, readiness
 
 THRUST, COAST, SINGULAR = range(3)  # arcs of a minimum-time flight, by their place among their words
@@ -72,9 +72,10 @@ def throttle(h, ready, p):
 def normal(t, x, y, z, vx, vy, vz, p, tables):
     """(unit sail normal, throttle) of the law."""
     lx, ly, lz, ready = primer(t, x, y, z, vx, vy, vz, p, tables)
-    inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
+    r2 = x * x + y * y + z * z
+    inverse = 1.0 / np.sqrt(r2)
     ux, uy, uz = x * inverse, y * inverse, z * inverse
-    nx, ny, nz, h = towards_primer(p.primer.sail, tables, p.places.sail, ux, uy, uz, lx, ly, lz)
+    nx, ny, nz, h = towards_primer(p.primer.sail, tables, p.places.sail, r2, ux, uy, uz, lx, ly, lz)
     return nx, ny, nz, throttle(h, ready, p)
 
 
@@ -128,8 +129,8 @@ def _observe(time, states, parameters, out, support):
             out[i, :], support[i] = 0.0, 0.0
             continue
         out[i, 0], out[i, 1], out[i, 2] = lx / size, ly / size, lz / size
-        r = np.sqrt(y[0] * y[0] + y[1] * y[1] + y[2] * y[2])
-        c = min(max((out[i, 0] * y[0] + out[i, 1] * y[1] + out[i, 2] * y[2]) / r, -1.0), 1.0)
-        h = steer(p.primer.sail, tables, p.places.sail, c, np.sqrt(1.0 - c * c), 0.0)[2]
+        r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
+        c = min(max((out[i, 0] * y[0] + out[i, 1] * y[1] + out[i, 2] * y[2]) / np.sqrt(r2), -1.0), 1.0)
+        h = steer_cool(p.primer.sail, tables, p.places.sail, r2, c, np.sqrt(1.0 - c * c))[2]
         support[i] = h * throttle(h, ready, p)
     return 0

@@ -126,7 +126,7 @@ def normal(t, x, y, z, vx, vy, vz, p, tables):
     """(unit sail normal, throttle) of a law that counts from the light."""
     at = p.places.sky
     sky.set_to(t, at, p.sky, tables)
-    ux, uy, uz, _ = sky.from_light(x, y, z, at, tables)
+    ux, uy, uz, near = sky.from_light(x, y, z, at, tables)
     law = p.by_light.law
     if p.by_light.edge_on != 0 and sunlit_share(x, y, z, p, tables) == 0.0:
         nx, ny, nz = by_light.edge_on(ux, uy, uz, vx, vy, vz)
@@ -142,7 +142,9 @@ def normal(t, x, y, z, vx, vy, vz, p, tables):
         return nx, ny, nz, 1.0
     if law == by_light.PRIMER:
         lx, ly, lz, ready = guarded_primer(t, x, y, z, vx, vy, vz, p, tables)
-        nx, ny, nz, h = towards_primer(p.primer.sail, tables, p.places.sail, ux, uy, uz, lx, ly, lz)
+        nx, ny, nz, h = towards_primer(
+            p.primer.sail, tables, p.places.sail, 1.0 / (near * near), ux, uy, uz, lx, ly, lz
+        )
         return nx, ny, nz, share_wanted(h, ready, p, tables)
     return ux, uy, uz, 1.0
 

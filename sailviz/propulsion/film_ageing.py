@@ -138,3 +138,9 @@ def closest_distance(
     """Distance from the Sun, m, at which a film comes to a temperature, K; the other arguments as of `temperature`."""
     at_1_au = float(temperature(AU, pitch, film, dose, factor, half_dose, irradiance))
     return float(AU * (at_1_au / hottest) ** 2)
+
+
+def coolness(hottest: float, film: str | Optics, irradiance: float = SOLAR_IRRADIANCE) -> float:
+    """Largest cosine of the pitch with which a fresh film stays below a temperature, K, at 1 au; it grows with the
+    square of the distance, and is no limit where it is above 1."""
+    return float((hottest / float(temperature(AU, 0.0, film, irradiance=irradiance))) ** 4)

@@ -52,7 +52,7 @@ UNSAID = {  # by table, keys without which scenes were complete before they were
     "device.shape": ("air",),
     "expect": ("device",),
     "phase": ("attitude",),
-    "steering": ("in_shadow", "minimum_perigee", "margin", "arcs"),
+    "steering": ("in_shadow", "minimum_perigee", "margin", "arcs", "touches", "hottest"),
     "target": ("mean_anomaly", "elements_date"),
 }
 

@@ -1,11 +1,24 @@
 """How a craft is steered: the kinds of [steering]."""
 
+from itertools import pairwise
 from math import hypot
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from sailviz.scene.values import HALF_TURN, POSITIVE, Angle, Angles, Length, Section, Three, Time, Times, wrong
+from sailviz.scene.values import (
+    HALF_TURN,
+    POSITIVE,
+    Angle,
+    Angles,
+    Length,
+    Section,
+    Temperature,
+    Three,
+    Time,
+    Times,
+    wrong,
+)
 
 InShadow = Literal["hold", "edge-on"]  # how a sail stands in full shadow: as its law says, or edge-on to the flow
 
@@ -118,15 +131,26 @@ class Arc(Section):
     duration: Annotated[Time, POSITIVE]
 
 
+class Touched(Section):
+    """Where a minimum-time flight touches a limit of its distance from the Sun: the time from where the steering
+    begins, and by how much the costate along the radius jumps there, in the unit of the costates."""
+
+    time: Annotated[Time, POSITIVE]
+    jump: float
+
+
 class OptimalSteering(PrimerSteering):
     """A minimum-time flight from its initial costates: three of a planar flight, for the radius, the radial and the
     transverse speed (mu = 1, distance of the start = 1), or six, for position and velocity (mu = 1 au = 1). Only their
     ratios steer: all may be scaled alike, whatever H is then. Without arcs the thrust switches where the primer says
-    so; a singular arc has to be told."""
+    so; a singular arc has to be told. touches : where the costates jump; hottest : temperature of the film above which
+    it turns from the Sun."""
 
     kind: Literal["optimal"]
     costates: Annotated[list[float], Field(min_length=3, max_length=6)]
     arcs: Annotated[list[Arc], Field(min_length=1, max_length=1000)] | None = None
+    touches: Annotated[list[Touched], Field(min_length=1, max_length=1000)] | None = None
+    hottest: Annotated[Temperature, POSITIVE] | None = None
 
     @model_validator(mode="after")
     def _count(self) -> Self:
@@ -134,6 +158,11 @@ class OptimalSteering(PrimerSteering):
             raise wrong("costates are three numbers of a planar flight or six of any other")
         if not any(self.costates[-len(self.costates) // 2 :]):
             raise wrong("the costates of velocity are all zero: they point the thrust")
+        times = [one.time for one in self.touches or ()]
+        if any(b <= a for a, b in pairwise(times)):
+            raise wrong("the times of touches must increase")
+        if self.arcs is not None and times:
+            raise wrong("arcs are those of an electric sail, touches those of a flight without arcs: give one of them")
         return self
 
 

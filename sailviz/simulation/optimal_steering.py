@@ -8,9 +8,10 @@ from itertools import pairwise
 import numpy as np
 
 from sailviz import frames
-from sailviz.constants import MU_SUN
+from sailviz.constants import AU, MU_SUN
 from sailviz.design.minimum_time.replay import Solved, from_planar, primer_history
 from sailviz.design.minimum_time.singular_arcs import Arc
+from sailviz.design.minimum_time.touches import Touch
 from sailviz.errors import Fault, SceneError
 from sailviz.propagate.primer_callback import ARC_KINDS
 from sailviz.run.arrays import Phase
@@ -20,14 +21,14 @@ from sailviz.steering.optimal import optimal_pitch
 NAMES = {"thrust": "full thrust", "coast": "coast", "singular": "partial thrust"}  # of phases, by the kind of arc
 
 
-def primer_table(scene, position, velocity, device, characteristic_acceleration, begin=0.0):
+def primer_table(scene, position, velocity, device, characteristic_acceleration, begin=0.0, coolness=0.0):
     """Rows (n, 7): time s, primer (3), its rate (3), inertial, from `begin` s to the end of the run, or of its arcs;
     (time s, word) of every switch; times, s, at which the thrust jumps otherwise; and the arcs as phases of a flight.
 
     Of a flight in arcs the rows that `primer_callback` reads of them stand first.
 
-    position m, velocity m/s (3,) at `begin`; device : the sail that the law reckons with, a name or a Film. SceneError
-    where the costates lead nowhere.
+    position m, velocity m/s (3,) at `begin`; device : the sail that the law reckons with, a name or a Film; coolness :
+    what its heat allows, see `canonical_sail`. SceneError where the costates lead nowhere.
     """
     duration, numbers = scene.propagation.duration - begin, np.asarray(scene.steering.costates, dtype=float)
     arcs = _arcs(scene.steering.arcs or [])
@@ -35,17 +36,21 @@ def primer_table(scene, position, velocity, device, characteristic_acceleration,
         duration = arcs[-1].end
     try:
         if len(numbers) == 3:
-            start = planar_start(position, velocity, numbers)
-            radius = float(np.linalg.norm(position))
-            solved = from_planar(start, radius, duration, device, characteristic_acceleration, arcs)
+            start, radius = planar_start(position, velocity, numbers), float(np.linalg.norm(position))
+            touches = _touches(scene, duration, radius)
+            solved = from_planar(start, radius, duration, device, characteristic_acceleration, arcs, touches, coolness)
         else:
-            solved = Solved(position, velocity, numbers, duration, device, characteristic_acceleration, arcs)
+            touches = _touches(scene, duration, AU)
+            solved = Solved(
+                position, velocity, numbers, duration, device, characteristic_acceleration, arcs, touches, coolness
+            )
         found = primer_history(solved)
     except ValueError as error:
         raise SceneError([Fault("steering.costates", f"{error}.")], scene.source) from None
     rows = np.column_stack([begin + found.time, found.primer, found.rate])
     if not arcs:
-        return rows, _switches(found, device, begin), (), ()
+        touched = tuple(begin + one.time for one in scene.steering.touches or ())
+        return rows, _switches(found, device, begin), touched, ()
     phases = _phases(arcs, found, begin)
     switches = _arc_switches(arcs, phases, begin)
     return np.vstack([_arc_rows(arcs, found, begin), rows]), switches, _arc_breaks(arcs, begin), phases
@@ -99,6 +104,13 @@ def _arc_breaks(arcs, begin):
     moment after, where nothing depends on which of two arcs a step's last stage takes for its own."""
     beside = 1e-12 * arcs[-1].end
     return tuple(begin + arc.end + side * beside for arc in arcs[:-1] for side in (-1, 1))
+
+
+def _touches(scene, duration, radius):
+    """Those that come within a duration s, in units of mu = 1 and a radius in m."""
+    unit = float(np.sqrt(radius**3 / MU_SUN))
+    said = scene.steering.touches or ()
+    return tuple(Touch(one.time / unit, one.jump) for one in said if one.time < duration)
 
 
 def _switches(found, device, begin):

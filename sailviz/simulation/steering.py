@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, Generic, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -20,7 +20,9 @@ from sailviz.propagate.dynamics import Model
 from sailviz.propagate.primer_callback import observe_primer, observe_throttle, primer_steering
 from sailviz.propagate.sky_callback import observe_sky_primer
 from sailviz.propulsion import plasma_brake
-from sailviz.propulsion.devices import sail
+from sailviz.propulsion.devices import SOLAR_SAIL, sail
+from sailviz.propulsion.film_ageing import coolness
+from sailviz.scene.device import SolarSail
 from sailviz.scene.start import CircularStart
 from sailviz.scene.steering import (
     FrameSteering,
@@ -37,6 +39,7 @@ from sailviz.scene.steering import (
     TableSteering,
 )
 from sailviz.scene.values import Section
+from sailviz.simulation.film import irradiance_of, optics
 from sailviz.simulation.lowered import (
     Array,
     Columns,
@@ -49,6 +52,9 @@ from sailviz.simulation.lowered import (
 )
 from sailviz.steering import attitude, by_light, primers
 from sailviz.words import angle
+
+if TYPE_CHECKING:
+    from sailviz.scene.loading import Scene
 
 S = TypeVar("S", bound=Section)
 SPIN_AXES = {"along-track": 0.0, "across-track": np.pi / 2}  # rad between the velocity and the plane of spin
@@ -149,26 +155,37 @@ def _throttled(steering: TableSteering, begin: float) -> Switches:
 
 
 # ---------------------------------------------------------------- towards a primer
-def _towards_primer(steering: PrimerSteering, flight: Flight, lowered: LoweredSteering) -> LoweredSteering:
-    """A law that follows a primer, and the sail with which it reckons."""
+def _towards_primer(
+    steering: PrimerSteering, flight: Flight, lowered: LoweredSteering, cool: float = 0.0
+) -> LoweredSteering:
+    """A law that follows a primer, and the sail with which it reckons; cool : coolness as of `canonical_sail`."""
     other = steering.reckons_with
-    steer_as = (flight.device.kind, flight.device.parameters) if other is None else sail(other, 1.0)
+    kind, numbers = (flight.device.kind, flight.device.parameters) if other is None else sail(other, 1.0)
+    steer_as = (kind, (*numbers, cool / AU**2) if kind == SOLAR_SAIL else numbers)
     return lowered._replace(steer_as=steer_as, primer_kind=lowered.kind, callback=primer_steering())
+
+
+def _coolness(steering: OptimalSteering, scene: Scene) -> float:
+    """Largest cosine of the pitch at 1 au that keeps the film below the steering's limit; 0 without one."""
+    if steering.hottest is None:
+        return 0.0
+    assert isinstance(scene.device, SolarSail)  # or the scene would not have been accepted
+    return coolness(steering.hottest, optics(scene.device), irradiance_of(scene))
 
 
 def _optimal(steering: OptimalSteering, flight: Flight) -> LoweredSteering:
     from sailviz.simulation.optimal_steering import primer_table
 
-    sail_of_law = steering.reckons_with or flight.sail
+    sail_of_law, cool = steering.reckons_with or flight.sail, _coolness(steering, flight.scene)
     rows, switches, breaks, phases = primer_table(
-        flight.scene, flight.position, flight.velocity, sail_of_law, flight.strength, flight.begin
+        flight.scene, flight.position, flight.velocity, sail_of_law, flight.strength, flight.begin, cool
     )
     # the times of another sail's switches are not quite those of this flight
     switches = switches if steering.reckons_with is None else ()
     lowered = LoweredSteering(
         attitude.PRIMER, table=rows, interpolation=attitude.CUBIC, switches=switches, breaks=breaks, phases=phases
     )
-    lowered = _towards_primer(steering, flight, lowered)
+    lowered = _towards_primer(steering, flight, lowered, cool)
     return lowered if steering.arcs is None else lowered._replace(primer_kind=attitude.ARCS)
 
 

@@ -28,6 +28,7 @@ NEARLY_AXIAL = 1e-9  # sine of the primer angle below which the tangent of the p
 # Places in the numbers of a sail, see `devices.sail`: its strength comes first, then those of a film or of an E-sail
 STRENGTH = 0
 B1, B2, B3 = 1, 2, 3
+COOL = 4  # behind those of a film that a primer law steers: largest cosine of the pitch over r^2 that it bears, 0: any
 MODEL, LARGEST_PITCH = 1, 2
 
 
@@ -227,6 +228,18 @@ def steer(device, p, at, c, s, eps):
 
 
 @inlined
+def cooled(p, at, most, c, s):
+    """(cos alpha, sin alpha, h, f_r, f_t, dh / d cos alpha) of a film of parameters p[at:] at the largest cosine of the
+    pitch that its heat allows, for a primer as of `steer` that asks for more; h <= 0 asks for none, and edge-on."""
+    b1, b2, b3 = p[at + B1], p[at + B2], p[at + B3]
+    across = np.sqrt(1.0 - most * most)
+    f_r, f_t = _film_thrust(b1, b2, b3, most, across)
+    rise_r = b1 + (2.0 * b3 + 3.0 * b2 * most) * most
+    rise_t = (2.0 * b2 * most + b3) * across - (b2 * most + b3) * most * most / across
+    return most, across, c * f_r + s * f_t, f_r, f_t, (c * rise_r + s * rise_t) / (b1 + b2 + b3)
+
+
+@inlined
 def full_thrust(device, p, at, r, au):
     """a_c (r_E / r)^k and the exponent k of the sail of parameters p[at:] at the distance r; au in the unit of r."""
     if device == SOLAR_SAIL:
@@ -259,16 +272,28 @@ def _across(ux, uy, uz, lx, ly, lz):
 
 
 @inlined
-def towards_primer(device, p, at, ux, uy, uz, lx, ly, lz):
+def steer_cool(device, p, at, r2, c, s):
+    """(cos alpha, sin alpha, h) as `steer`, at the square r2 of the distance: a film does not face the light more than
+    its heat allows, where that is limited."""
+    along, across, h, _, _ = steer(device, p, at, c, s, 0.0)
+    if device == SOLAR_SAIL and p[at + COOL] > 0.0 and h > 0.0 and along > p[at + COOL] * r2:
+        along, across, h, _, _, _ = cooled(p, at, p[at + COOL] * r2, c, s)
+        if h <= 0.0:
+            return 0.0, 1.0, 0.0
+    return along, across, h
+
+
+@inlined
+def towards_primer(device, p, at, r2, ux, uy, uz, lx, ly, lz):
     """Sail normal n and h, the thrust along a primer vector l of any length as a share of the full one, 0 for thrust
-    off; u = r_hat.
+    off; u = r_hat, r2 the square of the distance. A film's parameters end with that at COOL.
 
     A vanished primer asks for no thrust: off, and edge-on to the Sun.
     """
     c, s, tx, ty, tz = _across(ux, uy, uz, lx, ly, lz)
     if c == 0.0 and s == 0.0:
         return tx, ty, tz, 0.0
-    along, across, h, _, _ = steer(device, p, at, c, s, 0.0)
+    along, across, h = steer_cool(device, p, at, r2, c, s)
     return along * ux + across * tx, along * uy + across * ty, along * uz + across * tz, max(h, 0.0)
 
 
@@ -293,8 +318,8 @@ def towards_primer_analytic(p, at, ux, uy, uz, lx, ly, lz):
     return along * ux + across * tx, along * uy + across * ty, along * uz + across * tz, 1.0 if on else 0.0
 
 
-@entry("d1 i d1 i d D1 D1")
-def _pitches(primer, device, p, analytic, eps, pitch, h):
+@entry("d1 d1 i d1 i d D1 D1")
+def _pitches(primer, facing, device, p, analytic, eps, pitch, h):
     for i in range(len(primer)):
         c, s = np.cos(primer[i]), abs(np.sin(primer[i]))
         if analytic:
@@ -303,6 +328,10 @@ def _pitches(primer, device, p, analytic, eps, pitch, h):
             h[i] = c * f_r + s * f_t if on else -1.0
         else:
             along, across, h[i], _, _ = steer(device, p, 0, c, s, eps)
+            if device == SOLAR_SAIL and h[i] > 0.0 and along > facing[i]:
+                along, across, h[i], _, _, _ = cooled(p, 0, facing[i], c, s)
+                if h[i] <= 0.0:
+                    along, across, h[i] = 0.0, 1.0, 0.0
         pitch[i] = np.copysign(np.arctan2(across, along), np.sin(primer[i]))
     return 0
 
@@ -320,24 +349,29 @@ class Pitch:
         return np.array(self.pitch, dtype=dtype)
 
 
-def _evaluate(primer_angle: npt.ArrayLike, device: Film | str, analytic: bool) -> tuple[np.ndarray, np.ndarray]:
+def _evaluate(
+    primer_angle: npt.ArrayLike, device: Film | str, analytic: bool, facing: npt.ArrayLike = 1.0
+) -> tuple[np.ndarray, np.ndarray]:
     primer = np.asarray(primer_angle, dtype=float)
     kind, parameters = sail(device, 1.0, 1.0)
     flat = np.ascontiguousarray(primer).ravel()
+    most = np.array(np.broadcast_to(np.asarray(facing, dtype=float), primer.shape)).ravel()
     pitch, h = np.empty_like(flat), np.empty_like(flat)
-    _pitches(flat, kind, np.array(parameters), analytic, 0.0, pitch, h)
+    _pitches(flat, most, kind, np.array(parameters), analytic, 0.0, pitch, h)
     pitch, h = pitch.reshape(primer.shape), h.reshape(primer.shape)
     return pitch, h
 
 
-def optimal_pitch(primer_angle: npt.ArrayLike, device: Film | str = "ideal") -> Pitch:
+def optimal_pitch(primer_angle: npt.ArrayLike, device: Film | str = "ideal", facing: npt.ArrayLike = 1.0) -> Pitch:
     """Pitch that makes the most of the thrust along a primer at an angle from the Sun line, rad, same shape.
+
+    facing : largest cosine of the pitch that a film may have, e.g. for its heat, of the same shape or a number.
 
     device : a sail's name or a Film. Ideal and E-sail (final) in closed form; optical films by a cubic and Newton's
     method to rounding; beyond the switch angle a film stands edge-on (90 deg) and an E-sail is off. E-sails that do
     not describe pitches beyond 60 deg stay within. Re-derived.
     """
-    pitch, h = _evaluate(primer_angle, device, False)
+    pitch, h = _evaluate(primer_angle, device, False, facing)
     return Pitch(pitch[()], (h > 0)[()], h[()])
 
 

@@ -6,6 +6,11 @@ from sailviz.lazy import lazily
 
 if TYPE_CHECKING:
     from sailviz.transfers.direct import limits as limits
+    from sailviz.transfers.ends import Arrival as Arrival
+    from sailviz.transfers.ends import Bounds as Bounds
+    from sailviz.transfers.ends import Distance as Distance
+    from sailviz.transfers.ends import Escape as Escape
+    from sailviz.transfers.ends import FlyBy as FlyBy
     from sailviz.transfers.places import Place as Place
     from sailviz.transfers.places import circle as circle
     from sailviz.transfers.places import place as place
@@ -19,6 +24,11 @@ if TYPE_CHECKING:
     from sailviz.transfers.search import flight_times as flight_times
 
 _HOMES = {
+    "Arrival": "ends",
+    "Distance": "ends",
+    "Escape": "ends",
+    "FlyBy": "ends",
+    "Bounds": "ends",
     "Place": "places",
     "Solution": "search",
     "FlightTimes": "search",

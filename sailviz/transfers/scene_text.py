@@ -10,7 +10,7 @@ import numpy as np
 
 from sailviz.constants import AU, DAY, MU_SUN
 from sailviz.design.direct.search import DirectFlight
-from sailviz.design.minimum_time import replay
+from sailviz.design.minimum_time import replay, touches
 from sailviz.design.minimum_time.orbits import OrbitTransfer
 from sailviz.design.minimum_time.planar_transfer import Transfer
 from sailviz.design.minimum_time.planet_rendezvous import Rendezvous
@@ -18,7 +18,9 @@ from sailviz.design.minimum_time.singular_arcs import fly
 from sailviz.design.minimum_time.state_costate import POSITION, SPEED_UNIT, TIME_UNIT, VELOCITY, canonical_sail
 from sailviz.elements import Elements, elements
 from sailviz.propulsion.devices import ELECTRIC_SAILS
+from sailviz.propulsion.film_ageing import temperature
 from sailviz.propulsion.solar_sail import FILMS, Film
+from sailviz.transfers.ends import Arrival, Distance, Escape, FlyBy
 from sailviz.transfers.places import Place
 from sailviz.transfers.search import Solution
 from sailviz.words import nearest
@@ -43,7 +45,9 @@ def solved(flight: Flight) -> replay.Solved:
         return replay.Solved(flight.position, flight.velocity, flight.costates, flight.time, device, a_c)
     if flight.start is None:
         raise ValueError("there is no flight to write down: it has no start")
-    return replay.from_planar(flight.start, flight.initial_radius, flight.time, device, a_c, flight.arcs)
+    return replay.from_planar(
+        flight.start, flight.initial_radius, flight.time, device, a_c, flight.arcs, flight.touches, flight.coolness
+    )
 
 
 def path_of(flight: Flight, samples: int = 1000) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -51,9 +55,10 @@ def path_of(flight: Flight, samples: int = 1000) -> tuple[np.ndarray, np.ndarray
     it = solved(flight)
     start = np.concatenate([it.position / AU, it.velocity / SPEED_UNIT, it.costates])
     span = it.time / TIME_UNIT
-    sail = canonical_sail(it.device, it.characteristic_acceleration)
+    sail = canonical_sail(it.device, it.characteristic_acceleration, it.coolness)
     arcs = [(arc.kind, (arc.end - arc.start) / TIME_UNIT) for arc in it.arcs]
-    found = fly(start, span, sail, arcs, np.linspace(0.0, span, samples))
+    times = np.linspace(0.0, span, samples)
+    found = fly(start, span, sail, arcs, times) if arcs else touches.propagate(start, span, sail, it.touches, times)
     return found.rows[:, POSITION] * AU, found.rows[:, VELOCITY] * SPEED_UNIT, found.switches * TIME_UNIT
 
 
@@ -80,12 +85,14 @@ def scene_of(
     it = solved(flight)
     position, velocity, _ = path_of(flight)
     reached = elements(position[-1], velocity[-1], MU_SUN)
-    if target is None:
-        target = whole.target.table if whole else Place("reached", _plain(reached)).table | {"name": "orbit reached"}
-    if isinstance(flight, Rendezvous) and whole:
+    if target is None and whole is not None and whole.target is not None:
+        target = whole.target.table
+    elif target is None and whole is None:
+        target = Place("reached", _plain(reached)).table | {"name": "orbit reached"}
+    if isinstance(flight, Rendezvous) and whole and whole.target is not None:
         target = whole.target.moving_table
     craft = device_words(it.device)
-    ways = f"from {whole.origin.name} to {whole.target.name}" if whole else "from orbit to orbit"
+    ways = _ways(whole) if whole else "from orbit to orbit"
     lines = [
         f"title    = {_text(title or f'{craft}: the fastest way {ways}')}",
         'thesis   = "6"',
@@ -98,21 +105,29 @@ def scene_of(
     lines += ["", "[start]", *_start(flight, it, circular)]
     lines += ["", "[device]", *_device(it), "", "[steering]"]
     if form == "costates":
-        numbers = flight.costates if circular else it.costates
-        units = "mu = 1, distance of the start = 1" if circular else "mu = 1 au = 1"
+        in_plane = circular and isinstance(flight, Transfer) and not flight.angle_costate
+        numbers = flight.costates if in_plane else it.costates
+        units = "mu = 1, distance of the start = 1" if in_plane else "mu = 1 au = 1"
         scaled = f"{flight.hamiltonian:.6g}" if isinstance(flight, Rendezvous) else "+1"
         lines += ['kind = "optimal"', f"costates = {_list(numbers)}  # H = {scaled}, {units}", *_arcs(it)]
+        lines += _limited(flight, it, in_plane)
     else:
         lines += _steering_table(it)
-    lines += ["", "[target]", *(f"{key} = {_value(value)}" for key, value in target.items())]
+    if target is not None:
+        lines += ["", "[target]", *(f"{key} = {_value(value)}" for key, value in target.items())]
     lines += [
         "",
         "[propagation]",
         f"duration_d = {float(it.time / DAY)!r}",
         f"outputs = {outputs}",
         "tolerance = 1e-13",
+        *(['integrator = "dop853"'] if it.touches or it.coolness else []),  # the force has kinks
     ]
-    lines += _expectations(reached, position, 1e-7 if form == "costates" else 1e-5, isinstance(flight, Rendezvous))
+    within = 1e-7 if form == "costates" else 1e-5
+    if whole is not None and whole.kind == "end":
+        lines += _expected_end(whole, position, velocity, within)
+    else:
+        lines += _expectations(reached, position, within, isinstance(flight, Rendezvous))
     return "\n".join(lines) + "\n"
 
 
@@ -127,7 +142,7 @@ def _direct_scene(
     if flight.table is None or flight.flown is None:
         raise ValueError(f"there is no flight to write down: {flight.reason}")
     craft = device_words(flight.device)
-    ways = f"from {whole.origin.name} to {whole.target.name}" if whole else "from orbit to orbit"
+    ways = _ways(whole) if whole else "from orbit to orbit"
     about = (
         f"**{craft}** of {flight.characteristic_acceleration * 1e3:g} mm/s², steered {ways} by a table of pitch and "
         f"clock angle in **{flight.days} d** and {flight.revolutions:.3f} revolutions: the best found by the direct "
@@ -135,7 +150,11 @@ def _direct_scene(
     )
     reached = elements(flight.flown.position[-1], flight.flown.velocity[-1], MU_SUN)
     if target is None:
-        target = whole.target.table if whole else Place("reached", _plain(reached)).table | {"name": "orbit reached"}
+        target = (
+            whole.target.table
+            if whole and whole.target
+            else Place("reached", _plain(reached)).table | {"name": "orbit reached"}
+        )
     e = elements(flight.position, flight.velocity, MU_SUN)
     lines = [
         f"title    = {_text(title or f'{craft}: the fastest way {ways}')}",
@@ -166,6 +185,55 @@ def _direct_scene(
     lines += ["", "[[expect]]", 'quantity = "radius_au"', 'at = "end"']
     lines += [f"value = {radius!r}", f"within = {within * radius:.1e}"]
     return "\n".join(lines) + "\n"
+
+
+def _ways(whole: Solution) -> str:
+    """From where to where, in words."""
+    if isinstance(whole.end, (Distance, Escape, Arrival)):
+        return f"from {whole.origin.name} to {whole.end.words}"
+    past = "past" if isinstance(whole.end, FlyBy) else "to"
+    assert whole.target is not None, "it is flown by or reached"
+    return f"from {whole.origin.name} {past} {whole.target.name}"
+
+
+def _limited(flight: Flight, it: replay.Solved, in_plane: bool) -> list[str]:
+    """The steering's keys of a flight that touches a limit, or whose film is kept cool."""
+    lines = []
+    if it.touches and isinstance(flight, Transfer):
+        jumps = flight.touches if in_plane else it.touches  # in the unit of the costates
+        rows = (
+            f"{{ time_d = {_number(there.time * TIME_UNIT / DAY)}, jump = {_number(one.jump)} }}"
+            for there, one in zip(it.touches, jumps, strict=True)
+        )
+        lines.append(f"touches = [{', '.join(rows)}]")
+    if it.coolness and isinstance(it.device, str):
+        hottest = it.coolness**0.25 * float(temperature(AU, 0.0, it.device))
+        lines.append(f"hottest_K = {_number(float(f'{hottest:.12g}'))}")
+    return lines
+
+
+def _expected_end(whole: Solution, position: np.ndarray, velocity: np.ndarray, within: float) -> list[str]:
+    """What a flight to an end that is no orbit comes to, and what it keeps to. position, velocity : (n, 3) m, m/s."""
+    r, v = position[-1], velocity[-1]
+    distance = float(np.linalg.norm(r))
+    along, across = float(r @ v) / distance, float(np.linalg.norm(np.cross(r, v))) / distance
+    longitude = np.unwrap(np.arctan2(position[:, 1], position[:, 0]))
+    speed = float(np.linalg.norm(v)) / 1e3
+    limits, flight = whole.within, whole.flight
+    wanted = [
+        ("radius_au", "end", distance / AU, within * distance / AU),
+        ("radial_speed_km_s", "end", along / 1e3, within * speed),
+        ("transverse_speed_km_s", "end", across / 1e3, within * speed),
+        ("longitude_deg", "end", math.degrees(longitude[-1]), math.degrees(within)),
+    ]
+    if isinstance(flight, Transfer) and flight.touches and limits.perihelion is not None:
+        # rows beside the touching point: half a spacing away at most
+        wanted.append(("radius_au", "min", limits.perihelion / AU, 1e-3 * limits.perihelion / AU))
+    lines = []
+    for quantity, at, value, tolerance in wanted:
+        lines += ["", "[[expect]]", f'quantity = "{quantity}"', f'at = "{at}"']
+        lines += [f"value = {float(f'{value:.10g}')!r}", f"within = {tolerance:.1e}"]
+    return lines
 
 
 def _plain(e: Elements) -> Elements:

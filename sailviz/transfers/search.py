@@ -27,6 +27,7 @@ from sailviz.design.minimum_time.planet_rendezvous import DATES, Date, Rendezvou
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.transfers.direct import METHODS, between_circles
+from sailviz.transfers.ends import NO_BOUNDS, Arrival, Bounds, Distance, End, FlyBy
 from sailviz.transfers.places import Place, circle, names, place, trusted
 from sailviz.words import nearest
 
@@ -37,15 +38,18 @@ SAME_CIRCLE = 1e-4  # relative difference of two radii
 
 @dataclass(frozen=True)
 class Solution:
-    """A transfer found, or the nearest: kind "circles", "orbits" or "rendezvous", where from and where to, and the
-    flight with its time, costates, residual and claim; notes : sentences on how far the bodies' elements can be
-    trusted."""
+    """A transfer found, or the nearest: kind "circles", "orbits", "rendezvous" or "end", where from and where to, and
+    the flight with its time, costates, residual and claim. Of kind "end" also the end, None for the circle of the
+    target, and the limits kept to; the target of a distance is its circle, of an escape none. notes : sentences on how
+    far the bodies' elements can be trusted."""
 
     kind: str
     origin: Place
-    target: Place
+    target: Place | None
     flight: Transfer | OrbitTransfer | Rendezvous | DirectFlight
     notes: tuple[str, ...] = ()
+    end: End | None = None
+    within: Bounds = NO_BOUNDS
 
     @property
     def outcome(self) -> str:
@@ -56,10 +60,12 @@ class Solution:
 
 def find(
     origin: str | Place,
-    target: str | Place,
+    target: str | Place | None,
     device: Film | str = "ideal",
     characteristic_acceleration: float = 1e-3,
     *,
+    end: End | None = None,
+    within: Bounds = NO_BOUNDS,
     orbits: bool = False,
     departure: Date | tuple[Date, Date] | None = None,
     starts: int | None = None,
@@ -74,8 +80,10 @@ def find(
 
     origin, target : names in PLACES, or a Place. device : a name in SAILS or a Film, characteristic_acceleration m/s2.
     Between circles at the mean distances; with orbits=True, or to an inclined circle, between the orbits in space with
-    free anomalies; with departure, a date or (first, last) as datetime64 or text, from planet to planet. starts, dates
-    : of `orbit_to_orbit` and `rendezvous`. method : "indirect", by costates; "direct", by collocation and confirmed by
+    free anomalies; with departure, a date or (first, last) as datetime64 or text, from planet to planet. end : what
+    the flight comes to instead of an orbit (`transfers.ends`), within : what it then keeps to, between circles; a
+    target is None but for a FlyBy. starts, dates : of `orbit_to_orbit` and `rendezvous`. method : "indirect", by
+    costates; "direct", by collocation and confirmed by
     the indirect one, between circles and with the extra `direct` only; "auto", the direct one where the other fails or
     limits are set: those it keeps to, and an answer under them is a DirectFlight. progress(share, words) is called now
     and then; after time_limit s of wall time the best so far is the answer, marked; effort : an `Effort` instead of
@@ -83,29 +91,61 @@ def find(
     `Solution.outcome` says whether there is none.
     """
     effort = Effort.of(effort, progress, time_limit)
-    begin, end = (place(x) if isinstance(x, str) else x for x in (origin, target))
+    begin = place(origin) if isinstance(origin, str) else origin
+    aim = place(target) if isinstance(target, str) else target
     if isinstance(device, str) and device not in SAILS:
         raise ValueError(f'there is no sail called "{device}". {nearest(device, SAILS)}')
-    _check_method(method, limits, orbits or departure is not None or bool(end.circle and end.orbit.inclination))
+    _check_method(method, limits, orbits or departure is not None or bool(aim and aim.circle and aim.orbit.inclination))
     a_c = characteristic_acceleration
+    if end is not None or within.any:
+        if limits.any or method == "direct":
+            raise ValueError("the direct method and its limits on the way are for flights between circles")
+        if departure is not None or orbits or (aim is not None and aim.orbit.inclination and aim.circle):
+            raise ValueError("other ends and limits are those of flights between circles in one plane")
+        return _to_end(begin, aim, device, a_c, end, within, effort)
+    if aim is None:
+        raise ValueError("a flight that has no end of its own needs a target")
     if departure is not None:
-        return _between_bodies(begin, end, device, a_c, departure, dates, effort)
-    if orbits or (end.circle and end.orbit.inclination):
+        return _between_bodies(begin, aim, device, a_c, departure, dates, effort)
+    if orbits or (aim.circle and aim.orbit.inclination):
         if not orbits:
             begin = circle(begin.radius, name=begin.name)
         count = STARTS if starts is None else starts
-        found = orbit_to_orbit(begin.orbit, end.orbit, device, a_c, starts=count, effort=effort)
-        return Solution("orbits", begin, end, found)
-    begin, end = (circle(x.radius, name=x.name) for x in (begin, end))
-    if abs(end.radius / begin.radius - 1) < SAME_CIRCLE:
-        raise ValueError(f"{end.name} is where {begin.name} is: between the two circles there is nothing to fly")
+        found = orbit_to_orbit(begin.orbit, aim.orbit, device, a_c, starts=count, effort=effort)
+        return Solution("orbits", begin, aim, found)
+    begin, aim = (circle(x.radius, name=x.name) for x in (begin, aim))
+    if abs(aim.radius / begin.radius - 1) < SAME_CIRCLE:
+        raise ValueError(f"{aim.name} is where {begin.name} is: between the two circles there is nothing to fly")
     if method != "direct" and not limits.any:
-        flight = circle_to_circle(begin.radius, end.radius, device, a_c, effort=effort)
+        flight = circle_to_circle(begin.radius, aim.radius, device, a_c, effort=effort)
         done = flight.feasible or effort.stopped or flight.ending.outcome == IMPOSSIBLE
         if done or method == "indirect" or not _may_be_direct(device):
-            return Solution("circles", begin, end, flight)
-    direct = between_circles(begin.radius, end.radius, device, a_c, limits=limits, effort=effort)
-    return Solution("circles", begin, end, direct)
+            return Solution("circles", begin, aim, flight)
+    direct = between_circles(begin.radius, aim.radius, device, a_c, limits=limits, effort=effort)
+    return Solution("circles", begin, aim, direct)
+
+
+def _to_end(
+    origin: Place,
+    target: Place | None,
+    device: Film | str,
+    characteristic_acceleration: float,
+    end: End | None,
+    within: Bounds,
+    effort: Effort,
+) -> Solution:
+    """A flight in one plane to an end that is no orbit, or within limits."""
+    from sailviz.transfers.to_ends import flight_to_end
+
+    if (target is None) == (end is None or isinstance(end, FlyBy)):
+        raise ValueError("a fly-by and a circle have a target, and no other end has one")
+    if isinstance(end, (Distance, Arrival)):
+        target = circle(end.radius)
+    begin = circle(origin.radius, name=origin.name)
+    aim = None if target is None else circle(target.radius, name=target.name)
+    radius = None if aim is None else aim.radius
+    found = flight_to_end(begin.radius, radius, end, within, device, characteristic_acceleration, effort)
+    return Solution("end", begin, aim, found, end=end, within=within)
 
 
 def _check_method(method: str, limits: Limits, elsewhere: bool) -> None:

@@ -32,7 +32,7 @@ def lyapunov(r, v, mu, p):
 def normals(kind, p, u, lam, analytic):
     if analytic:
         return towards_primer_analytic(p, 0, u[0], u[1], u[2], lam[0], lam[1], lam[2])
-    return towards_primer(kind, p, 0, u[0], u[1], u[2], lam[0], lam[1], lam[2])
+    return towards_primer(kind, p, 0, 1.0, u[0], u[1], u[2], lam[0], lam[1], lam[2])
 
 
 def gradient(quantity, r, v, step=1e-5):
@@ -96,7 +96,7 @@ def test_normal_lies_between_sun_line_and_primer_at_the_optimal_pitch(device):
     u = np.array([0.6, -0.48, 0.64])
     rng = np.random.default_rng(3)
     for lam in rng.normal(size=(20, 3)):
-        *n, on = normals(kind, np.array(p), u, lam, False)
+        *n, on = normals(kind, np.array([*p, 0.0]), u, lam, False)
         angle = np.arctan2(np.linalg.norm(np.cross(u, lam)), u @ lam)
         found = optimal_pitch(angle, device)
         assert np.linalg.norm(n) == pytest.approx(1, abs=1e-14)
@@ -110,9 +110,9 @@ def test_normal_lies_between_sun_line_and_primer_at_the_optimal_pitch(device):
 def test_radial_and_vanished_primers_give_finite_normals(device):
     kind, p = sail(device, 1.0, 1.0)
     for u in np.eye(3):
-        assert normals(kind, np.array(p), u, 2 * u, False) == pytest.approx((*u, 1))
+        assert normals(kind, np.array([*p, 0.0]), u, 2 * u, False) == pytest.approx((*u, 1))
         for lam in (-u, 0 * u):
-            *n, on = normals(kind, np.array(p), u, lam, False)
+            *n, on = normals(kind, np.array([*p, 0.0]), u, lam, False)
             assert np.linalg.norm(n) == pytest.approx(1)
             assert on == 0
 
@@ -121,7 +121,7 @@ def test_analytic_normal_has_the_analytic_pitch():
     kind, p = sail("jpl-2015", 1.0, 1.0)
     u = np.array([1.0, 0, 0])
     for angle in (0.0, 0.3, 1.4, 2.5, 2.7, 3.1):
-        *n, on = normals(kind, np.array(p), u, np.array([np.cos(angle), 0, np.sin(angle)]), True)
+        *n, on = normals(kind, np.array([*p, 0.0]), u, np.array([np.cos(angle), 0, np.sin(angle)]), True)
         found = analytic_pitch(angle, "jpl-2015")
         assert np.arctan2(n[2], n[0]) == pytest.approx(found.pitch, abs=1e-14)
         assert on == found.on
@@ -144,6 +144,6 @@ def test_no_attitude_changes_an_element_faster():
         for goal in primers.GOALS.values():
             for sign in (1, -1):
                 lam = sign * np.array(primer(goal, r, v, MU))
-                *n, on = normals(kind, np.array(p), u, lam, False)
+                *n, on = normals(kind, np.array([*p, 0.0]), u, lam, False)
                 best = (on > 0) * (force(np.array([n])) @ lam)[0]
                 assert best >= (rates @ lam).max() - 1e-12

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from sailviz.design.minimum_time.planar_transfer import sail_from as sail_from
     from sailviz.design.minimum_time.planet_rendezvous import Rendezvous as Rendezvous
     from sailviz.design.minimum_time.planet_rendezvous import rendezvous as rendezvous
+    from sailviz.design.minimum_time.to_ends import Keeping as Keeping
+    from sailviz.design.minimum_time.to_ends import circle_to_end as circle_to_end
 
 _HOMES = {
     "Transfer": "planar_transfer",
@@ -20,6 +22,8 @@ _HOMES = {
     "planar_orbit_to_orbit": "circles",
     "sail_from": "planar_transfer",
     "OrbitTransfer": "orbits",
+    "circle_to_end": "to_ends",
+    "Keeping": "to_ends",
     "orbit_to_orbit": "orbits",
     "Rendezvous": "planet_rendezvous",
     "rendezvous": "planet_rendezvous",

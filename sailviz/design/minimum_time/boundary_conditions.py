@@ -8,14 +8,14 @@ departure. Units: mu = 1, one au or the caller's own unit of length.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from sailviz.compiled import entry
 from sailviz.design.minimum_time import costates
 from sailviz.design.minimum_time.state_costate import LRX, LRY, LRZ, LVX, LVY, LVZ, OWN, VX, VY, VZ, Sail, X, Y, Z
-from sailviz.steering.optimal import full_thrust, steer
+from sailviz.steering.optimal import full_thrust, steer_cool
 
 DIRECTION, SPAN, ANOMALY = slice(0, 3), 3, 4  # places of the unknowns
 SHORTEST = 1e-3  # flight time of a flight whatever its unknowns say
@@ -28,7 +28,7 @@ def polar(states: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nd
     return r, np.arctan2(y, x), (x * vx + y * vy) / r, (x * vy - y * vx) / r
 
 
-def _cartesian(r, angle, u, v, lam_r, lam_across, lam_u, lam_v):
+def cartesian(r, angle, u, v, lam_r, lam_across, lam_u, lam_v):
     """(n, 12) states and costates from their radial and transverse components at an azimuth."""
     c, s = np.cos(angle), np.sin(angle)
     zero = np.zeros_like(lam_u)
@@ -41,7 +41,7 @@ def _cartesian(r, angle, u, v, lam_r, lam_across, lam_u, lam_v):
     return np.stack(rows, axis=1)
 
 
-def _direction(unknowns):
+def direction(unknowns):
     """Unit vectors (n, 3) of the costates' direction, and the lengths (n,) that the unknowns give it."""
     size = np.linalg.norm(unknowns[:, DIRECTION], axis=1)
     return unknowns[:, DIRECTION] / size[:, None], size
@@ -79,23 +79,27 @@ class ToCircle:
     free_departure = False
 
     @property
-    def target(self) -> np.ndarray:
-        """Semi-latus rectum, eccentricity vector (x, y)."""
-        return np.array([self.radius, 0.0, 0.0])
+    def scale(self) -> float:
+        """The distance of the target from the Sun."""
+        return self.radius
+
+    def nearness(self, rows: np.ndarray) -> np.ndarray:
+        """Squares (n, m) of how far dense rows (n, m, 12) are from the circle."""
+        return off_orbit(rows, self.radius, 0.0, 0.0)
 
     def starts(self, unknowns: np.ndarray) -> np.ndarray:
         """(n, 12) from (n, 4)."""
         r, u, v = self.start
-        lam_r, lam_u, lam_v = _direction(unknowns)[0].T
+        lam_r, lam_u, lam_v = direction(unknowns)[0].T
         # no costate belongs to the angle: lam_angle = r lam_across - lam_u v + lam_v u = 0
-        return _cartesian(r, 0.0, u, v, lam_r, (lam_u * v - lam_v * u) / r, lam_u, lam_v)
+        return cartesian(r, 0.0, u, v, lam_r, (lam_u * v - lam_v * u) / r, lam_u, lam_v)
 
     def misses(self, unknowns: np.ndarray, tolerance: float, smoothing: float = 0.0) -> np.ndarray:
         """(n, 4) from (n, 4); NaN where a flight fails."""
         ends = fly(self, unknowns, tolerance, smoothing)
         r, _, u, v = polar(ends)
         slow = np.sqrt(self.radius)
-        return np.stack([r / self.radius - 1, u * slow, v * slow - 1, _direction(unknowns)[1] - 1], axis=1)
+        return np.stack([r / self.radius - 1, u * slow, v * slow - 1, direction(unknowns)[1] - 1], axis=1)
 
 
 @dataclass(frozen=True)
@@ -120,14 +124,23 @@ class BetweenEllipses:
         p, e, argument = self.final
         return np.array([p, e * np.cos(argument), e * np.sin(argument)])
 
+    @property
+    def scale(self) -> float:
+        """A distance of the target from the Sun."""
+        return self.final.semi_latus_rectum
+
+    def nearness(self, rows: np.ndarray) -> np.ndarray:
+        """Squares (n, m) of how far dense rows (n, m, 12) are from the orbit."""
+        return off_orbit(rows, *self.target)
+
     def starts(self, unknowns: np.ndarray) -> np.ndarray:
         """(n, 12) from (n, 5)."""
         p, e, argument = self.initial
         nu = unknowns[:, ANOMALY]
         r, u, v = p / (1 + e * np.cos(nu)), e * np.sin(nu) / np.sqrt(p), (1 + e * np.cos(nu)) / np.sqrt(p)
-        lam_r, lam_u, lam_v = _direction(unknowns)[0].T
+        lam_r, lam_u, lam_v = direction(unknowns)[0].T
         # a moment more on the initial orbit is worth nothing: lam_r . v - lam_u / r^2 = 0
-        return _cartesian(r, nu + argument, u, v, lam_r, (lam_u / r**2 - lam_r * u) / v, lam_u, lam_v)
+        return cartesian(r, nu + argument, u, v, lam_r, (lam_u / r**2 - lam_r * u) / v, lam_u, lam_v)
 
     def misses(self, unknowns: np.ndarray, tolerance: float, smoothing: float = 0.0) -> np.ndarray:
         """(n, 5) from (n, 5); NaN where a flight fails."""
@@ -138,7 +151,7 @@ class BetweenEllipses:
         idle = ends[:, LRX] * ends[:, VX] + ends[:, LRY] * ends[:, VY]
         idle -= (ends[:, LVX] * ends[:, X] + ends[:, LVY] * ends[:, Y]) / r**3
         size = np.linalg.norm(ends[:, LRX:LVZ], axis=1)
-        miss = [p / p_wanted - 1, ex - ex_wanted, ey - ey_wanted, idle / size, _direction(unknowns)[1] - 1]
+        miss = [p / p_wanted - 1, ex - ex_wanted, ey - ey_wanted, idle / size, direction(unknowns)[1] - 1]
         return np.stack(miss, axis=1)
 
 
@@ -150,7 +163,31 @@ def orbits(states: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return h * h, vy * h - x / r, -vx * h - y / r
 
 
-PlanarProblem = ToCircle | BetweenEllipses
+def off_orbit(rows: np.ndarray, p_wanted: float, ex_wanted: float, ey_wanted: float) -> np.ndarray:
+    """Squares (n, m) of how far the orbits of dense rows (n, m, >= 6) are from one of a semi-latus rectum and an
+    eccentricity vector (x, y); NaN where a row was not reached."""
+    px, py, vx, vy = (rows[..., place] for place in (X, Y, VX, VY))
+    r = np.sqrt(px * px + py * py)
+    h = px * vy - py * vx
+    ex, ey = vy * h - px / r - ex_wanted, -vx * h - py / r - ey_wanted
+    size = h * h / p_wanted - 1.0
+    return np.asarray(size * size + ex * ex + ey * ey)
+
+
+class PlanarProblem(Protocol):
+    """What a search for a fastest flight in the plane has to know of it: `ToCircle`, `BetweenEllipses` and others."""
+
+    @property
+    def sail(self) -> Sail: ...
+    @property
+    def size(self) -> int: ...
+    @property
+    def free_departure(self) -> bool: ...
+    @property
+    def scale(self) -> float: ...
+    def nearness(self, rows: np.ndarray) -> np.ndarray: ...
+    def starts(self, unknowns: np.ndarray) -> np.ndarray: ...
+    def misses(self, unknowns: np.ndarray, tolerance: float, smoothing: float = 0.0) -> np.ndarray: ...
 
 
 def fly(problem: PlanarProblem, unknowns: np.ndarray, tolerance: float, smoothing: float = 0.0) -> np.ndarray:
@@ -170,7 +207,7 @@ def hamiltonians_compiled(states, kind, p, out):
         along = (y[X] * y[LVX] + y[Y] * y[LVY] + y[Z] * y[LVZ]) / r
         c = along / size
         s = np.sqrt(max(0.0, 1.0 - c * c))
-        h = steer(kind, p, OWN, c, s, 0.0)[2]
+        h = steer_cool(kind, p, OWN, r2, c, s)[2]
         thrust, _ = full_thrust(kind, p, OWN, r, 1.0)
         out[i] = y[LRX] * y[VX] + y[LRY] * y[VY] + y[LRZ] * y[VZ] - along / r2 + thrust * size * h
     return 0

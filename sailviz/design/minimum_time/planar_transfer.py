@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sailviz.constants import AU, DAY, MU_SUN, RADIUS_SUN
+from sailviz.design.minimum_time import touches
 from sailviz.design.minimum_time.boundary_conditions import (
     ANOMALY,
     BetweenEllipses,
@@ -35,6 +36,7 @@ from sailviz.design.minimum_time.state_costate import (
     Y,
     canonical_sail,
 )
+from sailviz.design.minimum_time.touches import Touch
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import Film
 from sailviz.steering.optimal import B1, B2, B3, STRENGTH, optimal_pitch
@@ -47,9 +49,10 @@ def exponent(device: Film | str) -> float:
     return 7 / 6 if device == "electric-sail-original" else 1.0  # (3.33)
 
 
-def sail_from(device: Film | str, characteristic_acceleration: float, radius: float) -> Sail:
-    """The Sail of a device (name or Film) in units of mu = 1 and a radius in m; characteristic acceleration in m/s2."""
-    sail = canonical_sail(device, characteristic_acceleration)
+def sail_from(device: Film | str, characteristic_acceleration: float, radius: float, coolness: float = 0.0) -> Sail:
+    """The Sail of a device (name or Film) in units of mu = 1 and a radius in m; characteristic acceleration in m/s2;
+    coolness at 1 au, as of `canonical_sail`."""
+    sail = canonical_sail(device, characteristic_acceleration, coolness * (radius / AU) ** 2)
     parameters = sail.parameters.copy()
     parameters[OWN + STRENGTH] *= (radius / AU) ** (2.0 - exponent(device))
     return Sail(sail.kind, parameters)
@@ -117,6 +120,9 @@ class Transfer:
     start: np.ndarray | None = None  # (12,) state and costates, canonical
     arcs: tuple[Arc, ...] = ()
     throttle: tuple[float, float] | None = None
+    angle_costate: float = 0.0  # of the angle about the Sun, where that was given
+    touches: tuple[Touch, ...] = ()  # of a perihelion limit, canonical
+    coolness: float = 0.0  # of the film, where its heat is limited: see `canonical_sail`
     ending: Ending = ANSWERED
 
     @property
@@ -141,14 +147,22 @@ class Transfer:
         if self.start is None:
             raise ValueError(f"there is no flight to show: {self.reason}")
         unit = time_unit(self.initial_radius)
-        sail = sail_from(self.device, self.characteristic_acceleration, self.initial_radius)
+        sail = sail_from(self.device, self.characteristic_acceleration, self.initial_radius, self.coolness)
         span = self.time / unit
         times = np.linspace(0.0, span, samples)
-        rows = fly(self.start, span, sail, [(arc.kind, (arc.end - arc.start) / unit) for arc in self.arcs], times).rows
+        arcs = [(arc.kind, (arc.end - arc.start) / unit) for arc in self.arcs]
+        flown = (
+            fly(self.start, span, sail, arcs, times)
+            if arcs
+            else touches.propagate(self.start, span, sail, self.touches, times)
+        )
+        rows = flown.rows
         r_hat = rows[:, POSITION] / np.linalg.norm(rows[:, POSITION], axis=1)[:, None]
         primer = rows[:, LAM_V] / np.linalg.norm(rows[:, LAM_V], axis=1)[:, None]
         across = r_hat[:, X] * primer[:, Y] - r_hat[:, Y] * primer[:, X]
-        steered = optimal_pitch(np.arctan2(across, np.sum(r_hat * primer, axis=1)), self.device)
+        au = np.linalg.norm(rows[:, POSITION], axis=1) * self.initial_radius / AU
+        facing = np.minimum(self.coolness * au**2, 1.0) if self.coolness else 1.0
+        steered = optimal_pitch(np.arctan2(across, np.sum(r_hat * primer, axis=1)), self.device, facing)
         throttle = steered.on.astype(float)
         if self.arcs:
             throttle = throttle_of_arcs(rows, times * unit, self.arcs, sail)

@@ -7,6 +7,7 @@ to the error asked for.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import Protocol
@@ -27,6 +28,7 @@ from sailviz.design.minimum_time.state_costate import (
     VELOCITY,
     canonical_sail,
 )
+from sailviz.design.minimum_time.touches import Touch, jumped, propagate
 from sailviz.propulsion.solar_sail import Film
 from sailviz.steering.optimal import optimal_pitch
 
@@ -39,7 +41,8 @@ BESIDE = 1e-9  # of the flight, from a switch to where its two sides are read
 class Solved:
     """What a flight starts from: position m and velocity m/s (3,), costates (6,) in units of mu = 1 and one au, time s,
     device, characteristic_acceleration m/s2. `OrbitTransfer` and `Rendezvous` have the same fields, but no arcs, those
-    of an electric sail that uses partial voltage."""
+    of an electric sail that uses partial voltage, no touches, where the costates jump (in the same units), and no
+    coolness, what the film's heat allows: see `canonical_sail`."""
 
     position: np.ndarray
     velocity: np.ndarray
@@ -48,6 +51,8 @@ class Solved:
     device: Film | str
     characteristic_acceleration: float
     arcs: tuple[Arc, ...] = ()
+    touches: tuple[Touch, ...] = ()
+    coolness: float = 0.0
 
 
 class Replayable(Protocol):
@@ -74,12 +79,17 @@ def from_planar(
     device: Film | str,
     characteristic_acceleration: float,
     arcs: tuple[Arc, ...] = (),
+    touches: Sequence[Touch] = (),
+    coolness: float = 0.0,
 ) -> Solved:
-    """A Solved from state and costates (12,) in units of mu = 1 and a radius in m, as of circle-to-circle flights."""
+    """A Solved from state and costates (12,) in units of mu = 1 and a radius in m, as of circle-to-circle flights;
+    touches in the same units."""
     a, start = radius / AU, np.asarray(start, dtype=float)
     position, velocity = start[POSITION] * radius, start[VELOCITY] * SPEED_UNIT / np.sqrt(a)
     lam = np.concatenate([start[LAM_R] * np.sqrt(a), start[LAM_V] * a**2])  # -d time / d (position, velocity)
-    return Solved(position, velocity, lam, float(time), device, float(characteristic_acceleration), arcs)
+    there = tuple(Touch(one.time * a**1.5, one.jump * float(np.sqrt(a))) for one in touches)
+    a_c = float(characteristic_acceleration)
+    return Solved(position, velocity, lam, float(time), device, a_c, arcs, there, coolness)
 
 
 @dataclass(frozen=True)
@@ -120,13 +130,20 @@ def _arcs_of(solved: Replayable) -> tuple[Arc, ...]:
     return solved.arcs if isinstance(solved, Solved) else ()
 
 
+def _keeping(solved: Replayable) -> tuple[tuple[Touch, ...], float]:
+    """Where a flight's costates jump, and the coolness of its film; none and 0 of flights that know no limits."""
+    return (solved.touches, solved.coolness) if isinstance(solved, Solved) else ((), 0.0)
+
+
 def _fly(solved: Replayable, times: npt.ArrayLike = ()) -> Flight:
-    """The flight, with rows at times in s."""
+    """The flight, with rows at times in s; one where the costates jump is that before."""
+    touches, coolness = _keeping(solved)
     y = np.concatenate([np.divide(solved.position, AU), np.divide(solved.velocity, SPEED_UNIT), solved.costates])
-    sail = canonical_sail(solved.device, solved.characteristic_acceleration)
+    sail = canonical_sail(solved.device, solved.characteristic_acceleration, coolness)
     span = solved.time / TIME_UNIT
     arcs = [(arc.kind, (arc.end - arc.start) / TIME_UNIT) for arc in _arcs_of(solved)]
-    flight = fly(y, span, sail, arcs, np.minimum(np.divide(times, TIME_UNIT), span))
+    moments = np.minimum(np.divide(times, TIME_UNIT), span)
+    flight = propagate(y, span, sail, touches, moments) if touches else fly(y, span, sail, arcs, moments)
     if flight.reason:
         raise ValueError(f"these costates cannot be flown: {flight.reason} after {flight.time * TIME_UNIT:.6g} s")
     return flight
@@ -139,7 +156,8 @@ def primer_history(solved: Replayable, *, error: float = 1e-10) -> PrimerHistory
     solved : an OrbitTransfer, a Rendezvous or a Solved.
     """
     arcs = _arcs_of(solved)
-    bounds = [0.0, *(arc.end for arc in arcs[:-1]), solved.time]
+    touched = {touch.time * TIME_UNIT: touch.jump for touch in _keeping(solved)[0]}
+    bounds = [0.0, *(touched or (arc.end for arc in arcs[:-1])), solved.time]
     pieces: list[list[np.ndarray]] = []
     throttle, worst = [], 0.0
     if arcs:
@@ -149,7 +167,10 @@ def primer_history(solved: Replayable, *, error: float = 1e-10) -> PrimerHistory
         while True:
             time = np.linspace(first, last, 2 * intervals + 1)
             flight = _fly(solved, time)
-            primer, rate = flight.rows[:, LAM_V], -flight.rows[:, LAM_R]
+            rows = flight.rows
+            if first in touched:
+                rows[0] = jumped(rows[:1], touched[first])[0]
+            primer, rate = rows[:, LAM_V], -rows[:, LAM_R]
             left, right = slice(0, -1, 2), slice(2, None, 2)
             half = (time[2] - time[0]) / TIME_UNIT / 8
             middle = 0.5 * (primer[left] + primer[right]) + half * (rate[left] - rate[right])
@@ -158,7 +179,7 @@ def primer_history(solved: Replayable, *, error: float = 1e-10) -> PrimerHistory
                 break
             intervals *= 2
         worst = max(worst, found)
-        begin = 2 if pieces else 0  # where two pieces meet is one row
+        begin = 2 if pieces and not touched else 0  # where two pieces meet is one row, and two where the rate jumps
         pieces.append([time[begin::2], primer[begin::2], rate[begin::2]])
         if arcs and arcs[piece].kind == "singular":
             sail = canonical_sail(solved.device, solved.characteristic_acceleration)
@@ -185,7 +206,8 @@ def steering_table(solved: Replayable, *, error: float = 1e-6) -> SteeringTable:
     turn, where there is thrust.
     """
     switches = _fly(solved).switches * TIME_UNIT
-    bounds = np.concatenate([[0.0], switches, [solved.time]])
+    touched = [touch.time * TIME_UNIT for touch in _keeping(solved)[0]]
+    bounds = np.unique(np.concatenate([[0.0], switches, touched, [solved.time]]))
     beside = BESIDE * solved.time
     columns, worst, before = [], 0.0, None
     for first, last in pairwise(bounds):
@@ -215,7 +237,9 @@ def _attitude(solved, time, before):
     rows = _fly(solved, time).rows
     primer = frames.to_frame(frames.rtn(rows[:, POSITION], rows[:, VELOCITY]), rows[:, LAM_V])
     across = np.hypot(primer[:, 1], primer[:, 2])
-    steered = optimal_pitch(np.arctan2(across, primer[:, 0]), solved.device)
+    coolness, r2 = _keeping(solved)[1], np.sum(rows[:, POSITION] ** 2, axis=1)
+    facing = np.minimum(coolness * r2, 1.0) if coolness else 1.0
+    steered = optimal_pitch(np.arctan2(across, primer[:, 0]), solved.device, facing)
     side = primer[:, 1:] / np.maximum(across, np.finfo(float).tiny)[:, None]
     throttle = steered.on.astype(float)
     if _arcs_of(solved):

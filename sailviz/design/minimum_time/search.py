@@ -23,7 +23,7 @@ from sailviz.design.minimum_time.boundary_conditions import ANOMALY, DIRECTION, 
 from sailviz.design.minimum_time.costates import STEPS, fly_dense
 from sailviz.design.minimum_time.effort import Effort
 from sailviz.design.minimum_time.finishing import Extremal, alike, distinct, exact, solve
-from sailviz.design.minimum_time.state_costate import VX, VY, Sail, X, Y
+from sailviz.design.minimum_time.state_costate import Sail, X, Y
 from sailviz.propulsion.solar_sail import Film
 from sailviz.steering.optimal import optimal_pitch
 
@@ -61,10 +61,10 @@ def screen(
     sail: Sail,
     smoothing: float,
     tolerance: float,
-    target: tuple[float, float, float],
+    nearness: Callable[[np.ndarray], np.ndarray],
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Nearest approach of flights from starts (n, 12) to a planar orbit: miss (n,) in semi-latus rectum and
-    eccentricity vector, time (n,) of it, looked for at so many samples of the span.
+    """Nearest approach of flights from starts (n, 12) to what they aim at: miss (n,) and time (n,) of it, looked for at
+    so many samples of the span. nearness(rows (n, m, 12)) -> squares (n, m) of how far dense rows are from it.
 
     Flown in pieces, so that one that dives into the Sun is given up before it costs thousands of steps.
     """
@@ -72,18 +72,12 @@ def screen(
     each = max(2, samples // pieces)
     stretch = span / pieces
     times = np.linspace(0.0, stretch, each + 1)
-    p_wanted, ex_wanted, ey_wanted = target
     best, when = np.full(len(starts), np.inf), np.full(len(starts), span)
     flying, y = np.arange(len(starts)), starts
     for piece in range(pieces):
         flown = fly_dense(y, np.full(len(flying), stretch), sail, times, tolerance, smoothing)
-        px, py, vx, vy = (flown.rows[:, 1:, place] for place in (X, Y, VX, VY))
         with np.errstate(all="ignore"):
-            r = np.sqrt(px * px + py * py)
-            h = px * vy - py * vx
-            ex, ey = vy * h - px / r - ex_wanted, -vx * h - py / r - ey_wanted
-            size = h * h / p_wanted - 1.0
-            miss = size * size + ex * ex + ey * ey
+            miss = nearness(flown.rows[:, 1:])
             near = flown.ends[:, X] ** 2 + flown.ends[:, Y] ** 2
         miss[~(miss < np.inf)] = np.inf  # a row that was not reached
         nearest = np.argmin(miss, axis=1)
@@ -107,7 +101,7 @@ def sequence(n: int, dimensions: int) -> np.ndarray:
     return np.mod(0.5 + np.outer(np.arange(1, n + 1), g ** -np.arange(1.0, dimensions + 1)), 1.0)
 
 
-def _turned(axes, angle, around):
+def turned(axes, angle, around):
     """Directions (n, 3) at an angle from axes (n, 3) or (3,), spread around them."""
     axes = np.broadcast_to(axes, (len(angle), 3))
     helper = np.where(np.abs(axes[:, 1:2]) < 0.9, [[0.0, 1.0, 0.0]], [[1.0, 0.0, 0.0]])
@@ -123,7 +117,7 @@ def spread(problem: PlanarProblem, n: int, outwards: bool) -> np.ndarray:
     q = sequence(n, problem.size - 2)
     axis = (1 if outwards else -1) * np.array([1.0, 0.0, 1.0]) / np.sqrt(2)
     unknowns = np.zeros((n, problem.size))
-    unknowns[:, DIRECTION] = _turned(axis, np.pi * q[:, 0] ** 1.5, 2 * np.pi * q[:, 1])
+    unknowns[:, DIRECTION] = turned(axis, np.pi * q[:, 0] ** 1.5, 2 * np.pi * q[:, 1])
     if problem.free_departure:
         unknowns[:, ANOMALY] = 2 * np.pi * q[:, 2]
     return unknowns
@@ -154,14 +148,12 @@ def in_threads(
 def _screened(problem, unknowns, span, smoothing, effort, progress=None):
     """(miss (n,), unknowns with their times) of the flights that unknowns (n, k) begin."""
     starts = problem.starts(unknowns)
-    semi_latus_rectum, *_ = problem.target
-    pace = 0.2 * min(1.0, semi_latus_rectum) ** 0.75
+    pace = 0.2 * min(1.0, problem.scale) ** 0.75
     samples = int(span / pace) + 2
-    sail, target = problem.sail, problem.target
 
     def part(places):
         effort.check()
-        return screen(starts[places], span, samples, sail, smoothing, ROUGH, target)
+        return screen(starts[places], span, samples, problem.sail, smoothing, ROUGH, problem.nearness)
 
     parts = max(min(16, len(unknowns) // 8), -(-len(unknowns) // MOST_AT_ONCE))
     found = in_threads(part, np.array_split(np.arange(len(unknowns)), parts), progress, effort)
@@ -180,7 +172,7 @@ def _candidates(problem, n, zooms, span, smoothing, outwards, effort, progress):
         best = unknowns[np.argsort(miss, kind="stable")[:KEPT]]
         children = np.repeat(best, CHILDREN, axis=0)
         angle, around = np.tile(width * np.sqrt(q[:, 0]), len(best)), np.tile(2 * np.pi * q[:, 1], len(best))
-        children[:, DIRECTION] = _turned(children[:, DIRECTION], angle, around)
+        children[:, DIRECTION] = turned(children[:, DIRECTION], angle, around)
         if problem.free_departure:
             children[:, ANOMALY] += np.tile(width * (2 * sequence(CHILDREN, 3)[:, 2] - 1), len(best))
         more, children = _screened(problem, children, span, smoothing, effort)

@@ -17,9 +17,9 @@ import numpy as np
 
 from sailviz.compiled import called
 from sailviz.constants import AU, GRAVITY_AT_1_AU, MU_SUN
-from sailviz.propulsion.devices import ELECTRIC_SAIL, sail
+from sailviz.propulsion.devices import ELECTRIC_SAIL, SOLAR_SAIL, sail
 from sailviz.propulsion.solar_sail import Film
-from sailviz.steering.optimal import full_thrust, optimal_pitch, steer
+from sailviz.steering.optimal import COOL, cooled, full_thrust, optimal_pitch, steer
 from sailviz.steering.singular import switching_rates
 
 TIME_UNIT = np.sqrt(AU**3 / MU_SUN)  # s, 58.13 d
@@ -38,7 +38,8 @@ NEVER = -2.0  # a cosine beyond reach
 
 class Sail(NamedTuple):
     """A sail as the propagator reads it: kind, and parameters: the cosine of the primer angle at which it switches
-    off, then the numbers of `devices.sail` in units of one au and the Sun's pull there."""
+    off, then the numbers of `devices.sail` in units of one au and the Sun's pull there; of a film also what its heat
+    allows, at steering.optimal.COOL."""
 
     kind: int
     parameters: np.ndarray
@@ -53,8 +54,9 @@ class Sail(NamedTuple):
         return self.kind == ELECTRIC_SAIL
 
 
-def canonical_sail(device: Film | str, characteristic_acceleration: float) -> Sail:
-    """The Sail of a device (name or Film) and its characteristic acceleration in m/s2; ValueError for no sail."""
+def canonical_sail(device: Film | str, characteristic_acceleration: float, coolness: float = 0.0) -> Sail:
+    """The Sail of a device (name or Film) and its characteristic acceleration in m/s2; ValueError for no sail.
+    coolness : largest cosine of a film's pitch at one au that its heat allows, which grows with r^2; 0: any."""
     kind, numbers = sail(device, characteristic_acceleration / GRAVITY_AT_1_AU, 1.0)
     low, high = 0.5 * np.pi, np.pi  # on at a transverse primer, every one of them
     off = NEVER
@@ -65,7 +67,7 @@ def canonical_sail(device: Film | str, characteristic_acceleration: float) -> Sa
                 break
             low, high = (middle, high) if optimal_pitch(middle, device).on else (low, middle)
         off = float(np.cos(low))
-    return Sail(kind, np.array([off, *numbers]))
+    return Sail(kind, np.array([off, *numbers, *([coolness] if kind == SOLAR_SAIL else [])]))
 
 
 @called
@@ -91,8 +93,18 @@ def right_hand_side(y, kind, p, eps, out):
     tx = ty = tz = 0.0
     if across > 0.0:
         tx, ty, tz = wx / across, wy / across, wz / across
-    _, _, h, fr, ft = steer(kind, p, OWN, c, s, eps)
+    along_light, _, h, fr, ft = steer(kind, p, OWN, c, s, eps)
     strength, exponent = full_thrust(kind, p, OWN, r, 1.0)
+    switching, warmer = c - p[SWITCH], 0.0
+    if kind == SOLAR_SAIL and p[OWN + COOL] > 0.0:
+        most = p[OWN + COOL] * r * r
+        if h > 0.0 and along_light > most:
+            _, _, h, fr, ft, rise = cooled(p, OWN, most, c, s)
+            switching = min(switching, h)
+            if h > 0.0:
+                warmer = 2.0 * rise * most  # r dh/dr: farther out the film may face the Sun more
+            else:
+                h = fr = ft = 0.0
     if eps < 0.0:
         share = 1.0
         if eps == COAST:
@@ -110,14 +122,14 @@ def right_hand_side(y, kind, p, eps, out):
     out[VY] = ar * uy + at * ty - yy * inverse3
     out[VZ] = ar * uz + at * tz - z * inverse3
     q = strength * size * inverse
-    radial = exponent * q * h - 3.0 * along * inverse3
+    radial = q * (exponent * h - warmer) - 3.0 * along * inverse3
     sideways = q * (c * ft - s * fr)
     out[LRX] = lx * inverse3 + radial * ux + sideways * tx
     out[LRY] = ly * inverse3 + radial * uy + sideways * ty
     out[LRZ] = lz * inverse3 + radial * uz + sideways * tz
     out[LVX], out[LVY], out[LVZ] = -y[LRX], -y[LRY], -y[LRZ]
     hamiltonian = y[LRX] * y[VX] + y[LRY] * y[VY] + y[LRZ] * y[VZ] + lx * out[VX] + ly * out[VY] + lz * out[VZ]
-    return c - p[SWITCH], hamiltonian
+    return switching, hamiltonian
 
 
 @called

@@ -23,7 +23,7 @@ NO_HEAT = "a film that radiates nothing has no temperature: its emissivities are
 
 def film_of_the_sail(scene: Scene) -> Faults:
     """What knows films that stay as they are, and what temperatures need."""
-    return _of_those_beside(scene) + _ageing(scene) + _warmth(scene) + _asked(scene)
+    return _of_those_beside(scene) + _ageing(scene) + _warmth(scene) + _turned_from_heat(scene) + _asked(scene)
 
 
 def _of_those_beside(scene: Scene) -> Faults:
@@ -84,6 +84,23 @@ def _warmth(scene: Scene) -> Faults:
         found.append((where, "temperatures are known of flat sails only, not of one with a shape"))
     if device.control is not None:
         found.append((where, "how warm a film gets that darkens is not known: control or hottest"))
+    return found
+
+
+def _turned_from_heat(scene: Scene) -> Faults:
+    """A minimum-time flight whose film turns from the Sun where it would become too hot."""
+    steering, device = scene.steering, scene.device
+    if not isinstance(steering, OptimalSteering) or steering.hottest is None:
+        return []
+    where, found = "steering.hottest", list[tuple[str, str]]()
+    if not isinstance(device, SolarSail) or device.shape is not None or device.control is not None:
+        found.append((where, "is the temperature of the film of a flat solar sail without control"))
+    elif not has_optics(device):
+        found.append((where, NEEDS_OPTICS))
+    elif not radiates(device):
+        found.append((where, NO_HEAT))
+    if steering.reckons_with is not None:
+        found.append((where, "is that of the sail's own film: leave reckons_with out"))
     return found
 
 

@@ -1,0 +1,223 @@
+"""Fastest flights from a circle to an end that is no orbit, past a radius or away from the Sun; within limits of the
+distance and of the film's heat; or in a given number of revolutions.
+
+Search as between circles; where a perihelion limit is given also over flights that touch it (`touching`), the fastest
+of all that keep to it is the answer; where the angle is given, the flights of a free one are followed to it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from sailviz.constants import DAY
+from sailviz.design.minimum_time import touches, touching
+from sailviz.design.minimum_time.boundary_conditions import SPAN, hamiltonians, polar
+from sailviz.design.minimum_time.circles import LAST, MORE_THRUST, SECOND
+from sailviz.design.minimum_time.continuation import follow
+from sailviz.design.minimum_time.costates import Flight
+from sailviz.design.minimum_time.effort import Effort
+from sailviz.design.minimum_time.finishing import Extremal, distinct
+from sailviz.design.minimum_time.planar_ends import TURN, AtRadius, End, Polar, ToEnd
+from sailviz.design.minimum_time.planar_transfer import (
+    Transfer,
+    exponent,
+    no_transfer,
+    sail_from,
+    strength,
+    time_unit,
+)
+from sailviz.design.minimum_time.search import Search, search, spiral_time
+from sailviz.design.minimum_time.state_costate import COSTATES, LRX, LVX, LVY
+from sailviz.design.minimum_time.touches import Touch
+from sailviz.design.minimum_time.touching import ROOM, Touching
+from sailviz.propulsion.solar_sail import Film
+
+Progress = Callable[[float, str], None]
+
+FIRST_RADIUS = 4.0  # to which flights that touch a limit are sought first, and carried out from there
+CARRIED = 4  # of the flights found, the fastest, that are carried on
+FAR = 4.0  # radius beyond which a flight is no spiral any more
+EARLY = 1e-6  # relative, by which a flight may pass the radius aimed at before its end
+
+
+@dataclass(frozen=True)
+class Keeping:
+    """What a flight keeps to: perihelion in units of the distance of departure, 0 for any; coolness of its film, see
+    `canonical_sail`; angle swept rad, None for any."""
+
+    perihelion: float = 0.0
+    coolness: float = 0.0
+    angle: float | None = None
+
+
+class Flown(NamedTuple):
+    """An extremal flown once more: unknowns of its ToEnd, start (12,) with H = +1, where it touches, path, angle swept
+    rad, smallest radius, residual."""
+
+    unknowns: np.ndarray
+    start: np.ndarray
+    touches: tuple[Touch, ...]
+    path: Flight
+    swept: float
+    closest: float
+    residual: float
+
+
+def circle_to_end(
+    initial_radius: float,
+    end: End,
+    device: Film | str,
+    characteristic_acceleration: float,
+    keeping: Keeping = Keeping(),
+    *,
+    progress: Progress | None = None,
+    time_limit: float | None = None,
+    effort: Effort | None = None,
+) -> Transfer:
+    """The fastest flight found from a circle about the Sun, of a radius in m, to an end in units of that radius.
+
+    device : a sail's name or a Film. characteristic_acceleration : m/s2 at 1 au. progress, time_limit, effort : as of
+    `circle_to_circle`. The result is as that of
+    `circle_to_circle`, with `touches` where it touches the perihelion limit and `angle_costate` where the angle is
+    given.
+    """
+    effort = Effort.of(effort, progress, time_limit)
+    sail = sail_from(device, characteristic_acceleration, initial_radius, keeping.coolness)
+    flight = ToEnd(sail, end)
+    guess = _flight_time(flight, device)
+    found, candidates = list[Search](), list[Flown]()
+    for tier in (SECOND, LAST):
+        tried = search(
+            flight, tier.spans * guess, tier.costates, end.scale >= 1, partial(_kept, flight, Keeping()),
+            effort=effort, words=f"{tier.costates} costates", zooms=tier.zooms, all_of_them=True,
+        )  # fmt: skip
+        found.append(tried)
+        if tried.extremals or keeping.perihelion or effort.stopped:
+            break
+    candidates = [_flown(flight, extremal) for extremal in found[-1].extremals]
+    if keeping.angle is not None:
+        flight = replace(flight, angle=keeping.angle)
+        candidates = list(_turned(flight, candidates, effort))
+    if keeping.perihelion and not effort.stopped:
+        touched, tried = _touching(flight, keeping.perihelion, effort)
+        candidates += touched
+        found.append(tried)
+    kept = sorted((one for one in candidates if _keeps(flight, one, keeping)), key=lambda one: one.unknowns[SPAN])
+    starts, converged = sum(one.starts for one in found), sum(one.converged for one in found)
+    if not kept:
+        days = LAST.spans * guess * time_unit(initial_radius) / DAY
+        reason = f"no flight was found within {days:.0f} d, from {starts} starts, of which {converged} converged"
+        ending = effort.not_found("", MORE_THRUST)
+        return no_transfer(device, characteristic_acceleration, initial_radius, reason, ending)
+    best, unit = kept[0], time_unit(initial_radius)
+    lam_r, lam_across, lam_u, lam_v = best.start[[LRX, LRX + 1, LVX, LVY]]
+    return Transfer(
+        device=device,
+        characteristic_acceleration=float(characteristic_acceleration),
+        initial_radius=float(initial_radius),
+        time=float(best.unknowns[SPAN] * unit),
+        revolutions=best.swept / TURN,
+        costates=np.array([lam_r, lam_u, lam_v]),
+        residual=best.residual,
+        hamiltonian_drift=best.path.drift,
+        solutions=len(kept),
+        solution_times=np.array([one.unknowns[SPAN] * unit for one in kept]),
+        switches=best.path.switches * unit,
+        closest=float(best.closest * initial_radius),
+        starts=starts,
+        converged=converged,
+        method="touching the limit" if best.touches else "screening",
+        feasible=True,
+        start=best.start,
+        angle_costate=float(lam_across - lam_u) if keeping.angle is not None else 0.0,
+        touches=best.touches,
+        coolness=keeping.coolness,
+        ending=effort.found(),
+    )
+
+
+def _flight_time(flight: ToEnd, device: Film | str) -> float:
+    """A rough flight time: a slow spiral as far as there is one, and on at about the speed of departure."""
+    to = min(flight.end.scale, FAR) if flight.end.scale != 1.0 else 0.5 * FAR
+    spiral = spiral_time(device, strength(flight.sail, device), exponent(device), 1.0, to)
+    return float(np.hypot(spiral, np.pi + max(1.0, flight.end.scale)))
+
+
+def _kept(flight: ToEnd, keeping: Keeping, unknowns: np.ndarray) -> bool:
+    """Whether an extremal of a search is a fastest flight rather than a slowest, and one to the end meant."""
+    if not hamiltonians(flight.starts(unknowns[None]), flight.sail)[0] > 0:
+        return False
+    return _keeps(flight, _flown(flight, Extremal(unknowns, 0.0)), keeping)
+
+
+def _flown(flight: ToEnd, extremal: Extremal, touched: Touching | None = None) -> Flown:
+    unknowns, sail = extremal.unknowns[: flight.size], flight.sail
+    start = flight.starts(unknowns[None])
+    h = float(hamiltonians(start, sail)[0])
+    start[:, COSTATES] /= h
+    jumps: tuple[Touch, ...] = ()
+    if touched is not None:
+        there = touched.touch(extremal.unknowns)
+        jumps = (Touch(there.time, there.jump / h),)
+    span = extremal.time
+    path = touches.propagate(start[0], span, sail, jumps, np.linspace(0.0, span, int(40 * span) + 200))
+    r, azimuth, _, _ = polar(path.rows)
+    angle = np.unwrap(azimuth)
+    return Flown(unknowns, start[0], jumps, path, float(angle[-1] - angle[0]), float(r.min()), extremal.miss)
+
+
+def _keeps(flight: ToEnd, one: Flown, keeping: Keeping) -> bool:
+    """Whether a flight comes to its end for the first time there, out of the Sun, within its limits."""
+    r, _, _, _ = polar(one.path.rows)
+    end = flight.end
+    if isinstance(end, AtRadius):
+        before = r[:-1] / end.radius
+        if (end.radius > 1 and before.max() > 1 + EARLY) or (end.radius < 1 and before.min() < 1 - EARLY):
+            return False
+    if not end.holds(Polar.of(one.path.end[None])) or any(touch.jump >= 0 for touch in one.touches):
+        return False
+    if keeping.angle is not None and abs(one.swept - keeping.angle) > 1e-6:
+        return False
+    return one.closest >= keeping.perihelion * (1 - ROOM)
+
+
+def _turned(flight: ToEnd, free: list[Flown], effort: Effort) -> Iterator[Flown]:
+    """Flights of the angle asked for, each followed from one of a free angle."""
+    assert flight.angle is not None, "there is an angle to follow to"
+    for one in free:
+
+        def problem_at(share: float, begin: float = one.swept, angle: float = flight.angle) -> ToEnd:
+            return replace(flight, angle=begin + share * (angle - begin))
+
+        path = follow(problem_at, np.append(one.unknowns, 0.0), effort=effort, words="following the angle")
+        if path.complete:
+            miss = float(np.abs(flight.misses(path.unknowns[None], 1e-13)).max())
+            if hamiltonians(flight.starts(path.unknowns[None]), flight.sail)[0] > 0:
+                yield _flown(flight, Extremal(path.unknowns, miss))
+
+
+def _touching(flight: ToEnd, perihelion: float, effort: Effort) -> tuple[list[Flown], Search]:
+    """Flights that touch the limit, and what was tried: a far radius is come to from a nearer one."""
+    end = flight.end
+    far = isinstance(end, AtRadius) and end.radius > FIRST_RADIUS
+    near = replace(flight, end=AtRadius(FIRST_RADIUS)) if far else flight
+    problem, first = Touching(flight, perihelion), Touching(near, perihelion)
+
+    def fastest(unknowns: np.ndarray) -> bool:
+        return bool(hamiltonians(near.starts(unknowns[None]), near.sail)[0] > 0 and unknowns[-1] < 0)
+
+    span = np.pi + 2 * near.end.scale
+    tried = touching.search(first, span, SECOND.costates, fastest, effort, "flights past the Sun")
+    extremals = tried.extremals
+    if far:
+        carried = list[Extremal | None]()
+        with effort.stoppable():
+            for one in extremals[:CARRIED]:
+                carried.append(touching.carried_out(problem, one.unknowns, FIRST_RADIUS, effort))
+        extremals = distinct(one for one in carried if one is not None)
+    return [_flown(flight, one, problem) for one in extremals], tried

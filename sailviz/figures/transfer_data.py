@@ -87,10 +87,10 @@ def compute_windows(path: Path) -> None:
             flight = transfers.find(
                 "earth", target, WINDOW_DEVICE, WINDOW_ACCELERATION * 1e-3, departure=(first, last), dates=dates
             ).flight
-            curve = flight.window if isinstance(flight, Rendezvous) else None
-            if curve is None:
+            if not isinstance(flight, Rendezvous) or flight.window is None:
                 raise RuntimeError(f"no flight to {target} was found between {first} and {last}")
             _say(f"window of {target}", begun)
+            curve = flight.window
             departures = np.append(curve.departures, flight.departure).astype("datetime64[s]")
             times = np.append(curve.times, flight.time) / DAY
             for i in np.argsort(departures):

@@ -43,8 +43,7 @@ _NODES, _WEIGHTS = (np.concatenate(x) for x in zip(*map(np.polynomial.legendre.l
 
 @inlined
 def _increments(n, nu, c, s, anomaly, sine, cosine, c0, a0, bk0, bm0, e, eta, b, scale, eps_r, eps_t):
-    """(Dp1, Dp2, Dq3) along the apse line, across it and of q3, from the start of a leg to nu: the first-order
-    solution."""
+    """First-order (Dp1, Dp2, Dq3) along the apse line, across it and of q3, from the start of a leg to nu."""
     k, m = 2 - n, 3 - n
     big_s, small_s = s_difference(k, c, c0, e), s_difference(m, c, c0, e)
     dbk = b_integral(k, nu, c, s, anomaly, sine, cosine, e, eta, b) - bk0

@@ -10,7 +10,8 @@ import pytest
 import sailviz
 from sailviz import transfers
 from sailviz.checks.expectations import check
-from sailviz.constants import AU
+from sailviz.constants import AU, DAY
+from sailviz.propulsion.film_ageing import temperature
 
 EARTH = transfers.circle(AU)
 
@@ -68,3 +69,14 @@ def test_a_limit_beyond_the_start_is_impossible_and_says_why():
     found = transfers.find("earth", None, end=transfers.Distance(5 * AU), within=far)
     assert found.outcome == "impossible"
     assert "nearer to the Sun than the limit" in found.flight.reason
+
+
+def test_a_film_that_is_kept_cool_flies_at_its_limit_and_takes_longer():
+    cool = transfers.find(
+        EARTH, "mars", "jpl-2015", 1e-3, end=transfers.FlyBy(), within=transfers.Bounds(hottest=270.0)
+    )
+    run = sailviz.simulate(sailviz.load_scene(tomllib.loads(transfers.scene_of(cool))))
+    cosine = np.sum(run.attitude.normal * run.position, axis=1) / np.linalg.norm(run.position, axis=1)
+    warm = temperature(np.linalg.norm(run.position, axis=1), np.arccos(cosine), "jpl-2015")
+    assert warm.max() == pytest.approx(270.0, rel=1e-9)
+    assert cool.flight.time > 1.05 * 169.463 * DAY  # of the film that may face the Sun

@@ -52,7 +52,7 @@ def figure(
     A RECORDING is told from a NAME by its ending, .rrd, or by how the file begins.
     """
     from sailviz.errors import RecordingError
-    from sailviz.figures import FigureError, draw, names, title
+    from sailviz.figures import FigureError, draw, draw_recording, names, title
 
     if listing:
         for name in names():
@@ -65,14 +65,11 @@ def figure(
     if why_not:
         raise click.UsageError(why_not)
     try:
-        for name in figures:
-            if name not in recordings:
-                title(name)  # a wrong name is found before anything is drawn
+        for name in sorted(set(figures) - recordings):
+            title(name)  # a wrong name is found before anything is drawn
         check_place(output, folder)
         for name in figures:
             if name in recordings:
-                from sailviz.figures import draw_recording
-
                 path, words = target / f"{Path(name).stem}.png" if folder else target, name
                 draw_recording(name, path, quantities, orbit=orbit, over=over or "", style=style, dpi=dpi)
             else:

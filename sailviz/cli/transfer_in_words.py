@@ -60,11 +60,9 @@ def _confirmation(flight: DirectFlight) -> str:
 
 def words(found: Solution) -> Iterator[str]:
     """What was found, line by line."""
-    import numpy as np
-
     from sailviz.design.direct import DirectFlight
-    from sailviz.design.minimum_time import Rendezvous, Transfer
-    from sailviz.transfers import device_words, path_of
+    from sailviz.design.minimum_time import Rendezvous
+    from sailviz.transfers import device_words
 
     flight = found.flight
     if isinstance(flight, DirectFlight):
@@ -84,6 +82,22 @@ def words(found: Solution) -> Iterator[str]:
     if not flight.feasible:
         yield from _without_an_answer(flight.reason, flight.ending)
         return
+    for name, value in _rows(found, flight):
+        yield f"  {name:<19}{value}"
+    yield "  " + flight.claim[0].upper() + flight.claim[1:] + ("" if flight.claim.endswith(".") else ".")
+    for note in found.notes:
+        yield f"  Mind: {note}."
+    if isinstance(flight, Rendezvous) and flight.window is not None:
+        yield from _window(flight, flight.window)
+
+
+def _rows(found: Solution, flight: Transfer | OrbitTransfer | Rendezvous) -> list[tuple[str, str]]:
+    """Names and words of what is to be said of a flight that was found."""
+    import numpy as np
+
+    from sailviz.design.minimum_time import Rendezvous, Transfer
+    from sailviz.transfers import path_of
+
     rows = [("flight time", f"{flight.time / DAY:.6f} d, {flight.revolutions:.4f} revolutions about the Sun")]
     if isinstance(flight, Rendezvous):
         rows += [("departure", _day(flight.departure)), ("arrival", _day(flight.arrival))]
@@ -107,18 +121,19 @@ def words(found: Solution) -> Iterator[str]:
     rows += [("local solutions", f"{flight.solutions} found")]
     if isinstance(flight, Transfer) and flight.method.startswith("direct"):
         rows += [("found by", "the direct method; confirmed by the indirect one, whose numbers these are")]
-    for name, value in rows:
-        yield f"  {name:<19}{value}"
-    yield "  " + flight.claim[0].upper() + flight.claim[1:] + ("" if flight.claim.endswith(".") else ".")
-    for note in found.notes:
-        yield f"  Mind: {note}."
-    if isinstance(flight, Rendezvous) and flight.window is not None:
-        yield from _best_dates(flight.window, flight.slope)
-        missing = "not searched" if flight.ending.stopped else "not found"
-        yield "  Leaving on       takes, days"
-        for day, time in zip(flight.window.departures, flight.window.times, strict=True):
-            took = f"{time / DAY:9.3f}" if np.isfinite(time) else missing
-            yield f"  {np.datetime_as_string(day, 'D')}       {took}"
+    return rows
+
+
+def _window(flight: Rendezvous, window: Window) -> Iterator[str]:
+    """The best dates of a window, and how long flights take from each of its dates."""
+    import numpy as np
+
+    yield from _best_dates(window, flight.slope)
+    missing = "not searched" if flight.ending.stopped else "not found"
+    yield "  Leaving on       takes, days"
+    for day, time in zip(window.departures, window.times, strict=True):
+        took = f"{time / DAY:9.3f}" if np.isfinite(time) else missing
+        yield f"  {np.datetime_as_string(day, 'D')}       {took}"
 
 
 def _partial_voltage(flight: Transfer) -> list[tuple[str, str]]:

@@ -21,6 +21,7 @@ from sailviz.run.arrays import Body, Phase
 from sailviz.scene.device import DistanceControl, SolarSail, control_of
 from sailviz.scene.film import ages
 from sailviz.scene.loading import Scene
+from sailviz.scene.phases import Phase as PhaseSection
 from sailviz.scene.phases import scene_of
 from sailviz.simulation.environment import parts_of, surroundings
 from sailviz.simulation.lowered import Flight, LoweredSteering, Place, merged
@@ -133,16 +134,15 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
     addresses, keep = _own_of(scene, steering, force)
     if steering is not None:
         steered = LoweredSteering(attitude.USER)
-    turning, turned = turning_of(scene, steered), None if taken is None else taken.turning
-    if turning is not None and turned is not None:
-        turning = taken_over(turning, turned)
+    turned = None if taken is None else taken.turning
+    turning = taken_over(turning_of(scene, steered), turned)
     when, times_beside = schedules(scene, steered.table, steered.breaks)
     if phase is not None:
         times_beside = in_phase(times_beside, [phase.state_of(device).level for device in scene.beside])
     own_switches = named_switches(scene, steered.switches)
     when = replace(when, switches=tuple(sorted({*when.switches, *own_switches})))
     beside = devices_beside(scene, position, velocity, times_beside, sky is not None)
-    level = 1.0 if phase is None else phase.state_of(scene.device).level
+    level = _level(scene, phase)
     when = replace(when, factors=level * when.factors)
     names, watching = watched(scene, body, phase)
     place = Place(scene, body, epoch_of(scene))
@@ -179,7 +179,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         return _flight(dynamics.model(body.mu, **parts), position, velocity, when.breaks, on, times)
 
     model = dynamics.model(body.mu, **parts, **_controlled(scene, when, nominal))
-    seventh = taken.seventh if taken is not None else _seventh(scene)
+    seventh = _seventh(scene) if taken is None else taken.seventh
     start = np.array([*position, *velocity, seventh])
     if taken is None:
         refuse_saturated(scene, model, start)
@@ -211,6 +211,11 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         limit,
         taken is None or taken.in_use,
     )
+
+
+def _level(scene: Scene, phase: PhaseSection | None) -> float:
+    """How hard the device works in a phase, of its full thrust."""
+    return 1.0 if phase is None else phase.state_of(scene.device).level
 
 
 def _seventh(scene: Scene) -> float:

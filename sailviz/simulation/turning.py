@@ -182,10 +182,10 @@ def begun_turning(
     return TurningPlan(turning, motion)
 
 
-def taken_over(turning: Turning, before: TurningPlan) -> Turning:
-    """The craft of a phase after another: a mass that slid there, and that nothing slides any more, stays where it
-    is."""
-    if turning.body.slide_share != 0.0:
+def taken_over(turning: Turning | None, before: TurningPlan | None) -> Turning | None:
+    """The craft of a phase after another, if it turns: a mass that slid there, and that nothing slides any more, stays
+    where it is."""
+    if turning is None or before is None or turning.body.slide_share != 0.0:
         return turning
     return turning._replace(body=turning.body._replace(slide_share=before.body.slide_share))
 

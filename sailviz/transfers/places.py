@@ -50,6 +50,11 @@ class Place:
         return float(self.orbit.semi_major_axis)
 
     @property
+    def inclined(self) -> bool:
+        """Whether it is a circle out of the ecliptic."""
+        return self.circle and bool(self.orbit.inclination)
+
+    @property
     def table(self) -> dict[str, str | float]:
         """The orbit as a scene's [target]."""
         e = self.orbit

@@ -85,12 +85,7 @@ def scene_of(
     it = solved(flight)
     position, velocity, _ = path_of(flight)
     reached = elements(position[-1], velocity[-1], MU_SUN)
-    if target is None and whole is not None and whole.target is not None:
-        target = whole.target.table
-    elif target is None and whole is None:
-        target = Place("reached", _plain(reached)).table | {"name": "orbit reached"}
-    if isinstance(flight, Rendezvous) and whole and whole.target is not None:
-        target = whole.target.moving_table
+    target = _target(flight, whole, target, reached)
     craft = device_words(it.device)
     ways = _ways(whole) if whole else "from orbit to orbit"
     lines = [
@@ -104,15 +99,7 @@ def scene_of(
     circular = isinstance(flight, Transfer) and np.isnan(flight.departure_anomaly)
     lines += ["", "[start]", *_start(flight, it, circular)]
     lines += ["", "[device]", *_device(it), "", "[steering]"]
-    if form == "costates":
-        in_plane = circular and isinstance(flight, Transfer) and not flight.angle_costate
-        numbers = flight.costates if in_plane else it.costates
-        units = "mu = 1, distance of the start = 1" if in_plane else "mu = 1 au = 1"
-        scaled = f"{flight.hamiltonian:.6g}" if isinstance(flight, Rendezvous) else "+1"
-        lines += ['kind = "optimal"', f"costates = {_list(numbers)}  # H = {scaled}, {units}", *_arcs(it)]
-        lines += _limited(flight, it, in_plane)
-    else:
-        lines += _steering_table(it)
+    lines += _steering(flight, it, circular) if form == "costates" else _steering_table(it)
     if target is not None:
         lines += ["", "[target]", *(f"{key} = {_value(value)}" for key, value in target.items())]
     lines += [
@@ -129,6 +116,30 @@ def scene_of(
     else:
         lines += _expectations(reached, position, within, isinstance(flight, Rendezvous))
     return "\n".join(lines) + "\n"
+
+
+def _target(
+    flight: Flight, whole: Solution | None, given: dict[str, str | float] | None, reached: Elements
+) -> dict[str, str | float] | None:
+    """What a scene's [target] says; None where the flight came to no orbit."""
+    aim = None if whole is None else whole.target
+    if isinstance(flight, Rendezvous) and aim is not None:
+        return aim.moving_table
+    if given is not None:
+        return given
+    if whole is None:
+        return Place("reached", _plain(reached)).table | {"name": "orbit reached"}
+    return None if aim is None else aim.table
+
+
+def _steering(flight: Flight, it: replay.Solved, circular: bool) -> list[str]:
+    """By costates, and what else a flight under limits or at partial voltage needs."""
+    in_plane = circular and isinstance(flight, Transfer) and not flight.angle_costate
+    numbers = flight.costates if in_plane else it.costates
+    units = "mu = 1, distance of the start = 1" if in_plane else "mu = 1 au = 1"
+    scaled = f"{flight.hamiltonian:.6g}" if isinstance(flight, Rendezvous) else "+1"
+    optimal = ['kind = "optimal"', f"costates = {_list(numbers)}  # H = {scaled}, {units}"]
+    return [*optimal, *_arcs(it), *_limited(flight, it, in_plane)]
 
 
 def _direct_scene(

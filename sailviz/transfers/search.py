@@ -95,33 +95,48 @@ def find(
     aim = place(target) if isinstance(target, str) else target
     if isinstance(device, str) and device not in SAILS:
         raise ValueError(f'there is no sail called "{device}". {nearest(device, SAILS)}')
-    _check_method(method, limits, orbits or departure is not None or bool(aim and aim.circle and aim.orbit.inclination))
+    in_space = orbits or (aim is not None and aim.inclined)
+    _check_method(method, limits, in_space or departure is not None)
     a_c = characteristic_acceleration
     if end is not None or within.any:
         if limits.any or method == "direct":
             raise ValueError("the direct method and its limits on the way are for flights between circles")
-        if departure is not None or orbits or (aim is not None and aim.orbit.inclination and aim.circle):
+        if departure is not None or in_space:
             raise ValueError("other ends and limits are those of flights between circles in one plane")
         return _to_end(begin, aim, device, a_c, end, within, effort)
     if aim is None:
         raise ValueError("a flight that has no end of its own needs a target")
     if departure is not None:
         return _between_bodies(begin, aim, device, a_c, departure, dates, effort)
-    if orbits or (aim.circle and aim.orbit.inclination):
-        if not orbits:
-            begin = circle(begin.radius, name=begin.name)
+    if in_space:
+        first = begin if orbits else circle(begin.radius, name=begin.name)
         count = STARTS if starts is None else starts
-        found = orbit_to_orbit(begin.orbit, aim.orbit, device, a_c, starts=count, effort=effort)
-        return Solution("orbits", begin, aim, found)
-    begin, aim = (circle(x.radius, name=x.name) for x in (begin, aim))
+        found = orbit_to_orbit(first.orbit, aim.orbit, device, a_c, starts=count, effort=effort)
+        return Solution("orbits", first, aim, found)
+    return _between_circles(begin, aim, device, a_c, method, limits, effort)
+
+
+def _between_circles(
+    origin: Place,
+    target: Place,
+    device: Film | str,
+    characteristic_acceleration: float,
+    method: str,
+    limits: Limits,
+    effort: Effort,
+) -> Solution:
+    """By the indirect method, and where that answers nothing, or keeps to no limits, by the direct one."""
+    begin, aim = (circle(end.radius, name=end.name) for end in (origin, target))
     if abs(aim.radius / begin.radius - 1) < SAME_CIRCLE:
         raise ValueError(f"{aim.name} is where {begin.name} is: between the two circles there is nothing to fly")
     if method != "direct" and not limits.any:
-        flight = circle_to_circle(begin.radius, aim.radius, device, a_c, effort=effort)
+        flight = circle_to_circle(begin.radius, aim.radius, device, characteristic_acceleration, effort=effort)
         done = flight.feasible or effort.stopped or flight.ending.outcome == IMPOSSIBLE
         if done or method == "indirect" or not _may_be_direct(device):
             return Solution("circles", begin, aim, flight)
-    direct = between_circles(begin.radius, aim.radius, device, a_c, limits=limits, effort=effort)
+    direct = between_circles(
+        begin.radius, aim.radius, device, characteristic_acceleration, limits=limits, effort=effort
+    )  # fmt: skip
     return Solution("circles", begin, aim, direct)
 
 

@@ -26,7 +26,7 @@ from sailviz.design.minimum_time.boundary_conditions import (
     hamiltonians,
 )
 from sailviz.design.minimum_time.continuation import farthest, follow
-from sailviz.design.minimum_time.effort import Effort, Progress
+from sailviz.design.minimum_time.effort import Effort, Ending, Progress
 from sailviz.design.minimum_time.finishing import Extremal
 from sailviz.design.minimum_time.planar_transfer import (
     Transfer,
@@ -119,14 +119,8 @@ def circle_to_circle(
             found = screened(LAST)
     if found.extremals:
         return result(found, "screening")
-    told, advice = reached.words(initial_radius, characteristic_acceleration)
-    if effort.stopped:
-        advice.append(f"give the search more time than the {effort.seconds:.3g} s it had")
-    nearest = "; ".join(told or [_nearest_screened(found, initial_radius)])
     days = LAST.spans * guess * time_unit(initial_radius) / DAY
-    where = "before the search was stopped" if effort.stopped else f"within {days:.0f} d"
-    reason = f"no transfer was found {where}; {nearest}"
-    ending = effort.not_found(nearest, *advice)
+    reason, ending = _unfound(found, reached, effort, initial_radius, characteristic_acceleration, days)
     return no_transfer(device, characteristic_acceleration, initial_radius, reason, ending)
 
 
@@ -252,6 +246,23 @@ class Reached:
             nearest.append(f"{enough} reach the target, after {self.sail[1] * unit:.4f} d")
             advice.append(f"take {enough} or more")
         return nearest, advice or [MORE_THRUST]
+
+
+def _unfound(
+    found: Search,
+    reached: Reached,
+    effort: Effort,
+    initial_radius: float,
+    characteristic_acceleration: float,
+    days: float,
+) -> tuple[str, Ending]:
+    """Why there is no answer, and how the search ended. days : within which flights were looked for."""
+    told, advice = reached.words(initial_radius, characteristic_acceleration)
+    if effort.stopped:
+        advice.append(f"give the search more time than the {effort.seconds:.3g} s it had")
+    nearest = "; ".join(told or [_nearest_screened(found, initial_radius)])
+    where = "before the search was stopped" if effort.stopped else f"within {days:.0f} d"
+    return f"no transfer was found {where}; {nearest}", effort.not_found(nearest, *advice)
 
 
 def _by_arcs(

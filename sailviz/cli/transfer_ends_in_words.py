@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 Row = tuple[str, str]
 
+ROUNDED = 0.05  # m/s that four decimals of km/s do not show
+
 
 def name_of_target(found: Solution) -> str:
     """Where to, in words; an escape has no place."""
@@ -47,6 +49,7 @@ def rows_of_end(found: Solution, position: np.ndarray, velocity: np.ndarray) -> 
     r, v = position[-1], velocity[-1]
     distance, speed = float(np.linalg.norm(r)), float(np.linalg.norm(v))
     along = float(r @ v) / distance
+    along = along if abs(along) > ROUNDED else 0.0
     across = math.sqrt(max(speed**2 - along**2, 0.0))
     rows = [
         (

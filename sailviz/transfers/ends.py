@@ -95,7 +95,7 @@ class Bounds:
         if self.hottest is not None:
             said.append(f"the film not above {self.hottest:g} K")
         if self.revolutions is not None:
-            said.append(f"in {self.revolutions:g} revolutions")
+            said.append(f"in {self.revolutions:g} {'revolution' if self.revolutions == 1 else 'revolutions'}")
         return ", ".join(said)
 
     def impossible(self, origin: float, target: float | None) -> str:

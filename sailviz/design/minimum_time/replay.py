@@ -8,7 +8,7 @@ to the error asked for.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Protocol
 
@@ -35,6 +35,9 @@ from sailviz.steering.optimal import optimal_pitch
 FEWEST, MOST = 200, 200_000  # rows of a grid that is halved until it is fine enough
 ARC_ERROR = 1e-11  # rad, of the primer of a flight in arcs, and so about of its throttle: its rows are few
 BESIDE = 1e-9  # of the flight, from a switch to where its two sides are read
+VANISHED = (
+    1e-9  # the size of a primer, in that of the position's costate, below which it is rounding: 5 ms before an end
+)
 
 
 @dataclass(frozen=True)
@@ -146,7 +149,19 @@ def _fly(solved: Replayable, times: npt.ArrayLike = ()) -> Flight:
     flight = propagate(y, span, sail, touches, moments) if touches else fly(y, span, sail, arcs, moments)
     if flight.reason:
         raise ValueError(f"these costates cannot be flown: {flight.reason} after {flight.time * TIME_UNIT:.6g} s")
-    return flight
+    return replace(flight, rows=_directed(flight.rows)) if len(flight.rows) else flight
+
+
+def _directed(rows: np.ndarray) -> np.ndarray:
+    """Rows (n, 12) of a flight, at whose end the primer points somewhere. Where nothing is asked of the speed at the
+    end it vanishes there, and rounding would point the sail: its direction has a limit, that of the position's costate
+    q, since p' = -q."""
+    primer, pull = rows[-1, LAM_V], rows[-1, LAM_R]
+    if np.linalg.norm(primer) > VANISHED * np.linalg.norm(pull):
+        return rows
+    found = rows.copy()
+    found[-1, LAM_V] = VANISHED * pull
+    return found
 
 
 def primer_history(solved: Replayable, *, error: float = 1e-10) -> PrimerHistory:

@@ -106,8 +106,16 @@ def costate_flight(scene, r, v):
 
     scale = np.repeat([np.linalg.norm(x) for x in start.reshape(4, 3)], 3)
     arcs = scene.steering.arcs  # the first one is at full thrust, and behind it the switch would be thrown without end
-    span = (0.0, arcs[0].duration if arcs else scene.propagation.duration)
-    return solve_ivp(rates, span, start, "DOP853", rtol=1e-13, atol=1e-15 * scale, dense_output=True).sol
+    end = arcs[0].duration if arcs else scene.propagation.duration
+    pieces, begin = [], 0.0
+    for touch in [*(scene.steering.touches or ()), None]:  # where the costate of the radius jumps
+        until = end if touch is None else touch.time
+        flown = solve_ivp(rates, (begin, until), start, "DOP853", rtol=1e-13, atol=1e-15 * scale, dense_output=True)
+        pieces.append((until, flown.sol))
+        if touch is not None:
+            begin, start = until, flown.y[:, -1].copy()
+            start[6:9] += touch.jump * speed / unit * start[:3] / np.linalg.norm(start[:3])
+    return lambda t: next((sol for until, sol in pieces if t <= until), pieces[-1][1])(t)
 
 
 def steepest(function, r, v):

@@ -28,6 +28,26 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # begun in the background
 EXTRAS = {"deorbit/drag-sail": "sgp4"}  # shipped scene -> what has to be installed to fly it
 
 
+# Modules whose tests need the same machine code: on a clean checkout each of two processes would compile it
+# for itself.
+ALIKE = {
+    "test_body_control",
+    "test_closed_forms",
+    "test_endings",
+    "test_sky_drag",
+    "test_time_limit",
+    "test_turning_air",
+    "test_turning_phases",
+    "test_under_a_sky",
+}
+
+
+def pytest_collection_modifyitems(items):
+    for item in items:
+        if item.path.stem in ALIKE:
+            item.add_marker(pytest.mark.xdist_group(item.path.stem))
+
+
 def pytest_runtest_setup(item):
     given = item.callspec.params.values() if hasattr(item, "callspec") else ()
     for extra in {EXTRAS[value] for value in given if isinstance(value, str) and value in EXTRAS}:

@@ -53,7 +53,8 @@ def test_the_target_is_drawn_where_the_flight_ends(solutions):
 
 def hamiltonian(scene):
     """H of a scene's own costates, by its definition: lam_r v + lam_v (a_gravity + a_thrust), canonical."""
-    run = sailviz.simulate(scene.with_values({"propagation": {"duration_d": 1e-3, "outputs": 2}}))
+    duration = scene.propagation.duration if scene.steering.arcs else 86.4  # arcs last as long as the flight
+    run = sailviz.simulate(scene.with_values({"propagation": {"duration_s": duration, "outputs": 2}}))
     # three costates of a planar flight count in the distance of the start
     unit = np.linalg.norm(run.position[0]) if len(scene.steering.costates) == 3 else AU
     r, v = run.position[0] / unit, run.velocity[0] / np.sqrt(MU_SUN / unit)

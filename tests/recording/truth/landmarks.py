@@ -54,8 +54,10 @@ def mark_name(f, entity, number):
     size = {"day": DAY, "hour": 3600.0, "year": 36.525 * DAY}[word]  # the last digit of a year is its tenth
     when = float(day) * size * (10 if word == "year" else 1)
     known = {event.name: event.time - f.truth.time[0] for event in f.truth.recording.events}
-    if name in flown:  # of which this is the beginning
-        (event,) = (e for e in f.truth.recording.events if e.name == f"end of {flown[flown.index(name) - 1]}")
+    if name in flown[1:]:  # of which this is the beginning, of one of them if it comes again
+        ends = {f"end of {flown[i - 1]}" for i in range(1, len(flown)) if flown[i] == name}
+        begun = [e for e in f.truth.recording.events if e.name in ends]
+        event = min(begun, key=lambda e: np.linalg.norm(e.state[:3] / f.truth.length - dot))
         same_place(dot, event.state[:3], f.truth.length)
         known = {name: event.time - f.truth.time[0]}
     if name in known:

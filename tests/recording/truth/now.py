@@ -77,7 +77,7 @@ def count(f, row, word, now, total):
     told(total, (f.truth.time[-1] - f.truth.time[0]) / size)
 
 
-@part(r"(spiral in|crank|watch the poles)")  # of the flights that are looked at
+@part(r"(spiral in|crank|watch the poles|full thrust|coast|partial thrust)")  # of the flights that are looked at
 def phase(f, row, name):
     assert name == phases.names(f)[phases.of_rows(f)[row]]
 

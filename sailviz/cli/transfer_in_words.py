@@ -208,18 +208,7 @@ def summary(found: Solution) -> dict[str, Any]:
     if isinstance(flight, DirectFlight):
         return direct_summary(found, flight)
     values: dict[str, Any] = {
-        "kind": found.kind,
-        "from": found.origin.name,
-        "to": name_of_target(found),
-        "sail": flight.device,
-        "characteristic_acceleration_mm_s2": flight.characteristic_acceleration * 1e3,
-        "found": flight.feasible,
-        "outcome": found.outcome,
-        "stopped": flight.ending.stopped or None,
-        "tried": flight.ending.tried,
-        "seconds": flight.ending.seconds,
-        "nearest": flight.ending.nearest,
-        "advice": list(flight.ending.advice),
+        **_asked(found),
         "claim": flight.claim,
         "time_d": _known(flight.time / DAY),
         "revolutions": _known(flight.revolutions),
@@ -238,8 +227,9 @@ def summary(found: Solution) -> dict[str, Any]:
     return values
 
 
-def direct_summary(found: Solution, flight: DirectFlight) -> dict[str, Any]:
-    """What the direct method found and the indirect one has not confirmed, for JSON."""
+def _asked(found: Solution) -> dict[str, Any]:
+    """What was asked and how the search ended, for JSON: the same of every method."""
+    flight = found.flight
     return {
         "kind": found.kind,
         "from": found.origin.name,
@@ -247,6 +237,19 @@ def direct_summary(found: Solution, flight: DirectFlight) -> dict[str, Any]:
         "sail": flight.device,
         "characteristic_acceleration_mm_s2": flight.characteristic_acceleration * 1e3,
         "found": flight.feasible,
+        "outcome": found.outcome,
+        "stopped": flight.ending.stopped or None,
+        "tried": flight.ending.tried,
+        "seconds": flight.ending.seconds,
+        "nearest": flight.ending.nearest,
+        "advice": list(flight.ending.advice),
+    }
+
+
+def direct_summary(found: Solution, flight: DirectFlight) -> dict[str, Any]:
+    """What the direct method found and the indirect one has not confirmed, for JSON."""
+    return {
+        **_asked(found),
         "claim": flight.claim,
         "method": "direct method",
         "confirmed": False,
@@ -256,9 +259,6 @@ def direct_summary(found: Solution, flight: DirectFlight) -> dict[str, Any]:
         "revolutions": _known(flight.revolutions),
         "closest_au": _known(flight.closest / AU),
         "local_solutions": len(flight.solutions),
-        "stopped": flight.ending.stopped or None,
-        "tried": flight.ending.tried,
-        "seconds": flight.ending.seconds,
     }
 
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from sailviz import load_scene, simulate, transfers
+from sailviz.cli.transfer_in_words import summary
 from sailviz.constants import AU, DAY
 from sailviz.design.direct.extra import NoCasadiError
 from sailviz.design.direct.search import DirectFlight
@@ -49,6 +50,8 @@ def test_sail_that_may_turn_only_slowly_takes_longer_and_is_told_as_unconfirmed(
     assert flight.time > 1.01 * found(method="indirect").flight.time
     assert "direct method" in flight.claim
     assert flight.miss < 1e-4
+    told = summary(held)
+    assert (told["outcome"], told["nearest"], told["advice"]) == ("found", "", [])
 
 
 def test_scene_of_a_direct_flight_ends_where_its_own_flight_ended(held):

@@ -69,7 +69,7 @@ def equinoctial(r, v):
 
 
 def test_lyapunov_primer_is_the_way_down_the_squared_distance_to_the_target():
-    p = np.array([0.0, 1.5, 0.1, -0.05, 0.02, 0.3, 1.0, 2.0, 3.0, 4.0, 5.0, 1.5, 0.7, 0.8, 0.9, 1.1])
+    p = np.array([0.0, 1.5, 0.1, -0.05, 0.02, 0.3, 1.0, 2.0, 3.0, 4.0, 5.0, 1.5, 0.7, 0.8, 0.9, 1.1, 1e-9])
     targets, weights, scales = p[1:6], p[6:11], p[11:16]
     r, v = elements.state(*ORBIT, MU)
 

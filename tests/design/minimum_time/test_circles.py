@@ -49,6 +49,48 @@ def test_cold_start_finds_the_reference_transfer(device, target, ac, days, turns
     assert "Best found" in found.claim
 
 
+# a_c mm/s2, target au; flight time d, revolutions, costates: an ideal sail outwards, by two codes, confirmed by direct
+# transcription to 3e-4
+OUTWARDS = [
+    (1, 5.2026, 3779.827616, 1.889851, (9.6237487, 3.7526825, 9.0345734)),
+    (2, 5.2026, 2394.877495, 0.909918, (4.3962960, 2.0235278, 4.1878100)),
+    (1, 9.5371, 9878.896743, 2.657821, (8.5951529, 4.7262767, 6.6460595)),
+    (2, 9.5371, 6175.292511, 1.224552, (7.4681926, 2.7206329, 2.0989982)),
+]
+
+
+@pytest.mark.parametrize(("ac", "target", "days", "turns", "costates"), OUTWARDS)
+def test_cold_start_finds_the_reference_transfer_to_jupiter_and_saturn(ac, target, days, turns, costates):
+    found = circle_to_circle(AU, target * AU, "ideal", ac * 1e-3)
+    assert found.time / DAY == pytest.approx(days, abs=6e-7)
+    assert found.revolutions == pytest.approx(turns, abs=6e-7)
+    assert found.costates == pytest.approx(np.array(costates), abs=1e-7)
+    assert found.residual < 1e-9
+    assert found.hamiltonian_drift < 1e-9
+
+
+@pytest.mark.parametrize(("ac", "target", "days", "turns", "costates"), OUTWARDS)
+def test_costates_of_the_reference_lead_scipy_to_jupiter_and_saturn(ac, target, days, turns, costates):
+    """In polar form, the pitch by its closed form, without this package's equations; the costates have eight digits."""
+    strength = ac / 5.930083519
+
+    def rates(t, y):
+        r, _, u, v, lam_r, lam_u, lam_v = y
+        slope = (np.hypot(3 * lam_u, np.sqrt(8) * lam_v) - 3 * lam_u) / (4 * lam_v)  # tan of the pitch
+        c = 1 / np.hypot(1, slope)
+        along, across = strength / r**2 * c**3, strength / r**2 * c**3 * slope
+        pull = lam_u * (v**2 / r**2 - 2 / r**3 + 2 * along / r) + lam_v * (2 * across / r - u * v / r**2)
+        turning = lam_v * v / r - lam_r, (lam_v * u - 2 * lam_u * v) / r
+        return [u, v / r, v**2 / r - 1 / r**2 + along, across - u * v / r, pull, *turning]
+
+    span = days * DAY / YEAR_UNIT
+    y = solve_ivp(rates, (0, span), [1, 0, 0, 1, *costates], method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    assert y[0] / target == pytest.approx(1, abs=1e-6)
+    assert y[2] == pytest.approx(0, abs=1e-6)
+    assert y[3] * np.sqrt(target) == pytest.approx(1, abs=1e-6)
+    assert y[1] / (2 * np.pi) == pytest.approx(turns, abs=1e-6)
+
+
 def test_the_pitch_history_flown_alone_arrives_on_the_target_circle():
     """An independent integrator, the force model and the pitch as a spline: 1e-6 is the spline's error."""
     found = solved(AU, MARS * AU, "ideal", 1e-3)

@@ -28,24 +28,25 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # begun in the background
 EXTRAS = {"deorbit/drag-sail": "sgp4"}  # shipped scene -> what has to be installed to fly it
 
 
-# Modules whose tests need the same machine code: on a clean checkout each of two processes would compile it
-# for itself.
-ALIKE = {
-    "test_body_control",
-    "test_closed_forms",
-    "test_endings",
-    "test_sky_drag",
-    "test_time_limit",
-    "test_turning_air",
-    "test_turning_phases",
-    "test_under_a_sky",
-}
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    """Tests that need the same machine code, fixtures or flights go to one process. Not by `xdist_group`, which does
+    nothing under pytest 9.2 (pytest-xdist issue 1386)."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class Together(LoadScopeScheduling):
+        def _split_scope(self, nodeid):
+            return belongs_to(nodeid)
+
+    return Together(config, log)
 
 
-def pytest_collection_modifyitems(items):
-    for item in items:
-        if item.path.stem in ALIKE:
-            item.add_marker(pytest.mark.xdist_group(item.path.stem))
+def belongs_to(test):
+    """What the tests of one process are: those of a module; of a shipped scene; of what is drawn of the flights."""
+    module, _, name = test.partition("::")
+    if module.startswith("tests/scenes/") or module.endswith("/test_scene_names.py"):
+        return name.partition("[")[2] or module
+    return "truth" if module.startswith("tests/recording/truth/") else module
 
 
 def pytest_runtest_setup(item):

@@ -1,7 +1,4 @@
-"""Every flight is flown and recorded once a session, when a test first looks at it, by the tests of one
-process."""
-
-from pathlib import Path
+"""Every flight is flown and recorded once, when a test first looks at it: these tests run in one process."""
 
 import pytest
 
@@ -9,12 +6,6 @@ from sailviz.recording import record
 from sailviz.recording.overlay import record_together
 
 from .flights import FLIGHTS, Flight
-
-
-def pytest_collection_modifyitems(items):
-    for item in items:
-        if Path(item.path).parent == Path(__file__).parent and "flights" in item.fixturenames:
-            item.add_marker(pytest.mark.xdist_group("truth"))
 
 
 @pytest.fixture(scope="session")

@@ -45,7 +45,6 @@ def rows_of_end(found: Solution, position: np.ndarray, velocity: np.ndarray) -> 
     from sailviz.transfers.to_ends import speed_at_100_au
 
     flight = found.flight
-    assert isinstance(flight, Transfer), "flights to such ends are planar"
     r, v = position[-1], velocity[-1]
     distance, speed = float(np.linalg.norm(r)), float(np.linalg.norm(v))
     along = float(r @ v) / distance
@@ -64,6 +63,8 @@ def rows_of_end(found: Solution, position: np.ndarray, velocity: np.ndarray) -> 
         far = speed_at_100_au(speed, distance, flight.device, flight.characteristic_acceleration)
         if math.isfinite(far):
             rows += [("at 100 au", f"{far / 1e3:.4f} km/s if the sail is kept, facing the Sun: its thrust goes on")]
+    if not isinstance(flight, Transfer):  # without costates
+        return rows
     unit = time_unit(flight.initial_radius)
     for touch in flight.touches:
         rows += [("touches its limit", f"on day {touch.time * unit / DAY:.4f}, lam_r jumps by {touch.jump:.10g}")]
@@ -78,12 +79,15 @@ def values_of_end(found: Solution) -> dict[str, Any]:
     from sailviz.design.minimum_time.planar_transfer import time_unit
 
     flight, within = found.flight, found.within
-    assert isinstance(flight, Transfer), "flights to such ends are planar"
-    unit = time_unit(flight.initial_radius)
-    return {
+    values: dict[str, Any] = {
         "end": "circle" if found.end is None else type(found.end).__name__.lower(),
         "perihelion_au": None if within.perihelion is None else within.perihelion / AU,
         "hottest_K": within.hottest,
+    }
+    if not isinstance(flight, Transfer):
+        return values
+    unit = time_unit(flight.initial_radius)
+    return values | {
         "angle_costate": flight.angle_costate,
         "touches": [{"time_d": touch.time * unit / DAY, "jump": touch.jump} for touch in flight.touches],
     }

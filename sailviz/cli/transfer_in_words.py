@@ -26,14 +26,17 @@ def direct_words(found: Solution, flight: DirectFlight) -> Iterator[str]:
     from sailviz.design.minimum_time.state_costate import TIME_UNIT
     from sailviz.transfers import device_words
 
-    yield f"{found.origin.name} to {name_of_target(found)}, between circles in one plane"
+    yield _title(found)
     yield f"{device_words(flight.device)}, {flight.characteristic_acceleration * 1e3:g} mm/s² at 1 au"
     if not flight.feasible:
         yield from _without_an_answer(flight.reason, flight.ending)
         return
+    assert flight.flown is not None, "a flight that was found was flown"
     rows = [("flight time", f"{flight.days} d, {flight.revolutions:.4f} revolutions about the Sun")]
     rows += [("found by", f"the direct method; {_confirmation(flight)}")]
     rows += [("flown again", f"its table misses the end by {flight.miss:.1e}, worth {flight.error / DAY:.1g} d")]
+    if found.kind == "end":
+        rows += rows_of_end(found, flight.flown.position, flight.flown.velocity)
     rows += [("closest to the Sun", f"{flight.closest / AU:.4f} au")]
     kinds = {"T": "thrust", "C": "coast", "S": "partial voltage"}
     if flight.arcs:
@@ -53,8 +56,8 @@ def _held(flight: DirectFlight) -> str:
 
 
 def _confirmation(flight: DirectFlight) -> str:
-    if flight.limits.any:
-        return "under limits the indirect one confirms nothing" + _held(flight)
+    if flight.limits.cone is not None or flight.limits.turn_rate is not None:
+        return "of a sail that is held the indirect one confirms nothing" + _held(flight)
     return "the indirect one did not confirm it"
 
 
@@ -69,15 +72,7 @@ def words(found: Solution) -> Iterator[str]:
         yield from direct_words(found, flight)
         return
     craft = device_words(flight.device)
-    ways = {
-        "circles": "between circles in one plane",
-        "orbits": "between orbits in space, both anomalies free",
-        "rendezvous": f"to meet {name_of_target(found)} where it is",
-    }
-    if found.kind == "end":
-        yield heading(found)
-    else:
-        yield f"{found.origin.name} to {name_of_target(found)}, {ways[found.kind]}"
+    yield _title(found)
     yield f"{craft}, {flight.characteristic_acceleration * 1e3:g} mm/s² at 1 au"
     if not flight.feasible:
         yield from _without_an_answer(flight.reason, flight.ending)
@@ -89,6 +84,18 @@ def words(found: Solution) -> Iterator[str]:
         yield f"  Mind: {note}."
     if isinstance(flight, Rendezvous) and flight.window is not None:
         yield from _window(flight, flight.window)
+
+
+def _title(found: Solution) -> str:
+    """From where to where, and in what sense."""
+    ways = {
+        "circles": "between circles in one plane",
+        "orbits": "between orbits in space, both anomalies free",
+        "rendezvous": f"to meet {name_of_target(found)} where it is",
+    }
+    if found.kind == "end":
+        return heading(found)
+    return f"{found.origin.name} to {name_of_target(found)}, {ways[found.kind]}"
 
 
 def _rows(found: Solution, flight: Transfer | OrbitTransfer | Rendezvous) -> list[tuple[str, str]]:
@@ -248,7 +255,7 @@ def _asked(found: Solution) -> dict[str, Any]:
 
 def direct_summary(found: Solution, flight: DirectFlight) -> dict[str, Any]:
     """What the direct method found and the indirect one has not confirmed, for JSON."""
-    return {
+    values = {
         **_asked(found),
         "claim": flight.claim,
         "method": "direct method",
@@ -260,6 +267,7 @@ def direct_summary(found: Solution, flight: DirectFlight) -> dict[str, Any]:
         "closest_au": _known(flight.closest / AU),
         "local_solutions": len(flight.solutions),
     }
+    return values | (values_of_end(found) if found.kind == "end" else {})
 
 
 def days(flight: Transfer | OrbitTransfer | Rendezvous | DirectFlight) -> str:

@@ -202,10 +202,15 @@ class Question:
         planar = not (self.orbits or self.inclination_deg or self.date is not None)
         if said and not planar:
             yield f"{' and '.join(said)}: for flights in one plane, without --orbits, --inclination-deg or --date."
-        if self.perihelion_au is not None and not (self.flyby or self._instead_of_an_orbit):
-            yield "--perihelion-au is kept on the way past a circle or out: give --flyby, --distance-au or --escape."
-        if self.perihelion_au is not None and self.revolutions is not None:
-            yield "--perihelion-au and --revolutions are not looked for at once: give one of them."
+        if self.perihelion_au is None or self.method == "direct" or self.limited:
+            return
+        if not (self.flyby or self._instead_of_an_orbit):
+            yield (
+                "--perihelion-au is kept on the way past a circle or out: give --flyby, --distance-au or --escape, or "
+                "--method direct."
+            )
+        if self.revolutions is not None:
+            yield "--perihelion-au and --revolutions are looked for at once by --method direct only."
 
     def _about_tables(self, sails: tuple[str, ...], as_table: bool, output: str | None) -> Iterator[str]:
         ends = self.flyby or self._instead_of_an_orbit or self.within.any or self.across_km_s

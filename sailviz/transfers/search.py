@@ -22,11 +22,11 @@ from sailviz.design.direct.transcription import NO_LIMITS
 from sailviz.design.minimum_time.circles import circle_to_circle
 from sailviz.design.minimum_time.effort import IMPOSSIBLE, NOT_FOUND, Effort, Progress, Stopped
 from sailviz.design.minimum_time.orbits import STARTS, OrbitTransfer, orbit_to_orbit
-from sailviz.design.minimum_time.planar_transfer import Transfer
+from sailviz.design.minimum_time.planar_transfer import Transfer, no_transfer
 from sailviz.design.minimum_time.planet_rendezvous import DATES, Date, Rendezvous, rendezvous
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film
-from sailviz.transfers.direct import METHODS, between_circles
+from sailviz.transfers.direct import METHODS, in_the_plane
 from sailviz.transfers.ends import NO_BOUNDS, Arrival, Bounds, Distance, End, FlyBy
 from sailviz.transfers.places import Place, circle, names, place, trusted
 from sailviz.words import nearest
@@ -96,14 +96,12 @@ def find(
     if isinstance(device, str) and device not in SAILS:
         raise ValueError(f'there is no sail called "{device}". {nearest(device, SAILS)}')
     in_space = orbits or (aim is not None and aim.inclined)
-    _check_method(method, limits, in_space or departure is not None)
+    _check_method(method, limits, in_space)
     a_c = characteristic_acceleration
     if end is not None or within.any:
-        if limits.any or method == "direct":
-            raise ValueError("the direct method and its limits on the way are for flights between circles")
         if departure is not None or in_space:
             raise ValueError("other ends and limits are those of flights between circles in one plane")
-        return _to_end(begin, aim, device, a_c, end, within, effort)
+        return _to_end(begin, aim, device, a_c, end, within, method, limits, effort)
     if aim is None:
         raise ValueError("a flight that has no end of its own needs a target")
     if departure is not None:
@@ -134,8 +132,8 @@ def _between_circles(
         done = flight.feasible or effort.stopped or flight.ending.outcome == IMPOSSIBLE
         if done or method == "indirect" or not _may_be_direct(device):
             return Solution("circles", begin, aim, flight)
-    direct = between_circles(
-        begin.radius, aim.radius, device, characteristic_acceleration, limits=limits, effort=effort
+    direct = in_the_plane(
+        begin.radius, aim.radius, None, NO_BOUNDS, device, characteristic_acceleration, limits=limits, effort=effort
     )  # fmt: skip
     return Solution("circles", begin, aim, direct)
 
@@ -147,9 +145,11 @@ def _to_end(
     characteristic_acceleration: float,
     end: End | None,
     within: Bounds,
+    method: str,
+    limits: Limits,
     effort: Effort,
 ) -> Solution:
-    """A flight in one plane to an end that is no orbit, or within limits."""
+    """A flight in one plane to an end that is no orbit, or within limits: methods as between circles."""
     from sailviz.transfers.to_ends import flight_to_end
 
     if (target is None) == (end is None or isinstance(end, FlyBy)):
@@ -159,8 +159,19 @@ def _to_end(
     begin = circle(origin.radius, name=origin.name)
     aim = None if target is None else circle(target.radius, name=target.name)
     radius = None if aim is None else aim.radius
-    found = flight_to_end(begin.radius, radius, end, within, device, characteristic_acceleration, effort)
-    return Solution("end", begin, aim, found, end=end, within=within)
+    if method != "direct" and not limits.any:
+        found = flight_to_end(begin.radius, radius, end, within, device, characteristic_acceleration, effort)
+        done = found.feasible or effort.stopped or found.ending.outcome == IMPOSSIBLE
+        if done or method == "indirect" or not _may_be_direct(device):
+            return Solution("end", begin, aim, found, end=end, within=within)
+    proof = within.impossible(begin.radius, radius)
+    if proof:
+        none = no_transfer(device, characteristic_acceleration, begin.radius, proof, effort.impossible())
+        return Solution("end", begin, aim, none, end=end, within=within)
+    direct = in_the_plane(
+        begin.radius, radius, end, within, device, characteristic_acceleration, limits=limits, effort=effort
+    )
+    return Solution("end", begin, aim, direct, end=end, within=within)
 
 
 def _check_method(method: str, limits: Limits, elsewhere: bool) -> None:
@@ -170,7 +181,7 @@ def _check_method(method: str, limits: Limits, elsewhere: bool) -> None:
         raise ValueError(f'there is no method "{method}". {nearest(method, METHODS)}')
     if elsewhere and (method == "direct" or limits.any):
         what = "the direct method" if method == "direct" else "a limit on the way"
-        raise ValueError(f"{what} is for flights between circles in one plane")
+        raise ValueError(f"{what} is for flights in one plane")
     if method == "indirect" and limits.any:
         raise ValueError("limits on the way are kept by the direct method only")
 

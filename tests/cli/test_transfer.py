@@ -97,7 +97,7 @@ def test_a_table_tells_what_was_not_searched_from_what_was_not_found(monkeypatch
         (("earth", "mars", "--inclination-deg", 10), "--radius-au"),
         (("earth", "mars", "--table", "--orbits"), "between circles"),
         (("earth", "mars", "--table", "--cone-deg", 30), "flights of the indirect method"),
-        (("earth", "mars", "--orbits", "--method", "direct"), "between circles in one plane"),
+        (("earth", "mars", "--orbits", "--method", "direct"), "flights in one plane"),
         (("earth", "mars", "--cone-deg", 30, "--method", "indirect"), "direct method only"),
     ],
 )

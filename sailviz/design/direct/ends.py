@@ -191,28 +191,33 @@ class ToState:
 
 @dataclass(frozen=True)
 class ToRadius:
-    """To a distance from the Sun, whatever the velocity there."""
+    """To a distance from the Sun, whatever the velocity there; angle : swept in the plane, rad, or None."""
 
     radius: float
+    angle: float | None = None
 
     def unknowns(self) -> list[Unknown]:
         return []
 
     def conditions(self, axes: Axes, x: ca.SX, moment: ca.SX, p: list[ca.SX]) -> list[ca.SX]:
-        return [axes.radius(x) / self.radius - 1]
+        found = [axes.radius(x) / self.radius - 1]
+        return found if self.angle is None else [*found, x[1] - self.angle]
 
 
 @dataclass(frozen=True)
 class ToEscape:
-    """To an energy: what is left of the speed far from the Sun, 0 just escapes."""
+    """To an energy: what is left of the speed far from the Sun, 0 just escapes; angle : swept in the plane, rad, or
+    None."""
 
     excess: float
+    angle: float | None = None
 
     def unknowns(self) -> list[Unknown]:
         return []
 
     def conditions(self, axes: Axes, x: ca.SX, moment: ca.SX, p: list[ca.SX]) -> list[ca.SX]:
-        return [axes.speed2(x) - 2 / axes.radius(x) - self.excess**2]
+        found = [axes.speed2(x) - 2 / axes.radius(x) - self.excess**2]
+        return found if self.angle is None else [*found, x[1] - self.angle]
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ of all that keep to it is the answer; where the angle is given, the flights of a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import NamedTuple
@@ -15,13 +15,13 @@ from typing import NamedTuple
 import numpy as np
 
 from sailviz.constants import DAY
-from sailviz.design.minimum_time import touches, touching
+from sailviz.design.minimum_time import shooting, touches, touching
 from sailviz.design.minimum_time.boundary_conditions import SPAN, hamiltonians, polar
 from sailviz.design.minimum_time.circles import LAST, MORE_THRUST, SECOND
 from sailviz.design.minimum_time.continuation import follow
 from sailviz.design.minimum_time.costates import Flight
-from sailviz.design.minimum_time.effort import Effort
-from sailviz.design.minimum_time.finishing import Extremal, distinct
+from sailviz.design.minimum_time.effort import Effort, Ending
+from sailviz.design.minimum_time.finishing import GOAL, TIGHT, Extremal, distinct
 from sailviz.design.minimum_time.planar_ends import TURN, AtRadius, End, Polar, ToEnd
 from sailviz.design.minimum_time.planar_transfer import (
     Transfer,
@@ -114,8 +114,32 @@ def circle_to_end(
         reason = f"no flight was found within {days:.0f} d, from {starts} starts, of which {converged} converged"
         ending = effort.not_found("", MORE_THRUST)
         return no_transfer(device, characteristic_acceleration, initial_radius, reason, ending)
-    best, unit = kept[0], time_unit(initial_radius)
+    times = np.array([one.unknowns[SPAN] for one in kept]) * time_unit(initial_radius)
+    method = "touching the limit" if kept[0].touches else "screening"
+    counts = Counts(starts, converged, times, method)
+    return _transfer(kept[0], device, characteristic_acceleration, initial_radius, keeping, counts, effort.found())
+
+
+class Counts(NamedTuple):
+    """Of a search: starts finished, of them converged, flight times (n,) s of distinct extremals, by which method."""
+
+    starts: int
+    converged: int
+    times: np.ndarray
+    method: str
+
+
+def _transfer(
+    best: Flown,
+    device: Film | str,
+    characteristic_acceleration: float,
+    initial_radius: float,
+    keeping: Keeping,
+    counts: Counts,
+    ending: Ending,
+) -> Transfer:
     lam_r, lam_across, lam_u, lam_v = best.start[[LRX, LRX + 1, LVX, LVY]]
+    unit = time_unit(initial_radius)
     return Transfer(
         device=device,
         characteristic_acceleration=float(characteristic_acceleration),
@@ -125,20 +149,64 @@ def circle_to_end(
         costates=np.array([lam_r, lam_u, lam_v]),
         residual=best.residual,
         hamiltonian_drift=best.path.drift,
-        solutions=len(kept),
-        solution_times=np.array([one.unknowns[SPAN] * unit for one in kept]),
+        solutions=len(counts.times),
+        solution_times=counts.times,
         switches=best.path.switches * unit,
         closest=float(best.closest * initial_radius),
-        starts=starts,
-        converged=converged,
-        method="touching the limit" if best.touches else "screening",
+        starts=counts.starts,
+        converged=counts.converged,
+        method=counts.method,
         feasible=True,
         start=best.start,
         angle_costate=float(lam_across - lam_u) if keeping.angle is not None else 0.0,
         touches=best.touches,
         coolness=keeping.coolness,
-        ending=effort.found(),
+        ending=ending,
     )
+
+
+def flight_near(
+    initial_radius: float,
+    end: End,
+    device: Film | str,
+    characteristic_acceleration: float,
+    keeping: Keeping,
+    guess: np.ndarray,
+    counts: Counts,
+    *,
+    touching_at: float | None = None,
+    effort: Effort | None = None,
+) -> Transfer | None:
+    """The extremal that a guess leads to, as `circle_to_end` tells it; None where that is none, or is no flight within
+    limits. guess : unknowns of `ToEnd`, of 4 or, with an angle, 5. touching_at : time, in the same units, at which it
+    touches a perihelion limit."""
+    effort = effort or Effort()
+    sail = sail_from(device, characteristic_acceleration, initial_radius, keeping.coolness)
+    flight = ToEnd(sail, end, keeping.angle)
+    if touching_at is None:
+        root = shooting.solve(effort.watched(lambda batch: flight.misses(batch, TIGHT)), guess)
+        solved = Extremal(root.unknowns, root.residual)
+        tried: Iterable[tuple[Extremal, Touching | None]] = [(solved, None)] if solved.miss < GOAL else []
+    else:
+        tried = _touching_near(Touching(flight, keeping.perihelion), guess, touching_at, effort)
+    for extremal, problem in tried:
+        if hamiltonians(flight.starts(extremal.unknowns[None, : flight.size]), sail)[0] > 0:
+            one = _flown(flight, extremal, problem)
+            if _keeps(flight, one, keeping):
+                return _transfer(
+                    one, device, characteristic_acceleration, initial_radius, keeping, counts, effort.found()
+                )
+    return None
+
+
+def _touching_near(
+    problem: Touching, guess: np.ndarray, time: float, effort: Effort
+) -> Iterator[tuple[Extremal, Touching | None]]:
+    """What a guess that touches its limit at a time leads to, the jump of the costate there unknown."""
+    for jump in touching.JUMPS:
+        found = problem.finish(np.concatenate([guess, [time, jump]]), effort)
+        if found is not None:
+            yield found, problem
 
 
 def _flight_time(flight: ToEnd, device: Film | str) -> float:

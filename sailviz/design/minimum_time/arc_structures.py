@@ -5,7 +5,7 @@ On a singular arc the throttle lies between 0 and 1 (`steering.singular`). No fl
 an arc, for the surface S = 0 throws off whatever flies beside it; so the arcs are put in by hand, and judged by what
 the switching function does. Equations: S = 0 where T and C meet, S = S' = 0 where a singular arc begins, and the
 circle at the end. A coast beside a singular arc would solve its own with no length at all, so that there its leading
-terms are divided by the length squared.
+terms are divided by the length squared; so would an arc between two switches, where they are divided by the length.
 
 Source: re-derived, with the strengthened Kelley condition for a singular arc to be a maximum.
 """
@@ -13,7 +13,6 @@ Source: re-derived, with the strengthened Kelley condition for a singular arc to
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -31,7 +30,6 @@ ROUNDING = 1e-12  # of S / |p| inside an arc
 STEADY = 1e-10  # of H, whose size is 1
 SAMPLES = 101  # of every arc that is judged
 MOST_ARCS, DEPTH = 9, 3  # of a structure, and of changes made to one in a row
-FIRST, LARGEST, SMALLEST = 0.03, 0.1, 1e-4  # steps in the logarithm of the radius
 DULL = 0.03  # of an arc's length: a fault so near one end belongs to the arc beside it
 
 
@@ -62,27 +60,19 @@ class Fault(NamedTuple):
     where: float = 0.0
 
 
-@dataclass(frozen=True)
-class ByArcs:
-    """How far a flight was followed: radius of the circle reached, its structure, circles solved on the way."""
-
-    radius: float
-    structure: Structure
-    circles: int
-
-
 def starts(flight: ToCircle, unknowns: np.ndarray) -> np.ndarray:
     """(n, 12) of unknowns (n, >= 3)."""
     return flight.starts(np.hstack([unknowns[:, DIRECTION], np.zeros((len(unknowns), 1))]))
 
 
-def misses(flight: ToCircle, arcs: str, unknowns: np.ndarray) -> np.ndarray:
-    """What is to vanish (n, k) of unknowns (n, k - 1 + ...), as many as there are unknowns."""
+def misses(flight: ToCircle, arcs: str, unknowns: np.ndarray, radii: np.ndarray | None = None) -> np.ndarray:
+    """What is to vanish (n, k) of unknowns (n, k). radii (n,) : of the circles, where they are not the flight's."""
     ends = fly_arcs(starts(flight, unknowns), arcs, unknowns[:, LENGTHS:], flight.sail)
     r, _, u, v = polar(ends[-1])
-    slow = np.sqrt(flight.radius)
+    radius = np.asarray(flight.radius if radii is None else radii)
+    slow = np.sqrt(radius)
     size = np.linalg.norm(unknowns[:, DIRECTION], axis=1)
-    found = [r / flight.radius - 1, u * slow, v * slow - 1, size - 1]
+    found = [r / radius - 1, u * slow, v * slow - 1, size - 1]
     at = [switching(end, flight.sail) for end in ends]
     for i, (arc, following) in enumerate(pairwise(arcs)):
         if arc == "S":
@@ -91,9 +81,11 @@ def misses(flight: ToCircle, arcs: str, unknowns: np.ndarray) -> np.ndarray:
         if following == "C" and arcs[i + 2 : i + 3] == "S":  # seen from where the coast ends
             length, there = unknowns[:, LENGTHS + i + 1], at[i + 2]
             value = (value - there.value + there.rate * length) / length**2
-        if arc == "C" and i > 0 and arcs[i - 1] == "S":  # seen from where it begins
+        elif arc == "C" and i > 0 and arcs[i - 1] == "S":  # seen from where it begins
             length, there = unknowns[:, LENGTHS + i], at[i]
             value = (value - there.value - there.rate * length) / length**2
+        elif following != "S" and i > 0 and arcs[i - 1] != "S":  # between two switches
+            value = (value - at[i].value) / unknowns[:, LENGTHS + i]
         found.append(value)
         if following == "S":
             found.append(here.rate)
@@ -253,44 +245,3 @@ def from_extremal(flight: ToCircle, extremal: Extremal) -> Structure:
     arcs = "".join("TC"[(first + i) % 2] for i in range(len(lengths)))
     direction = extremal.unknowns[DIRECTION]
     return Structure(arcs, np.concatenate([direction / np.linalg.norm(direction), lengths]))
-
-
-def follow_arcs(
-    flight: ToCircle,
-    begin: Structure,
-    radius: float,
-    progress: Callable[[float], None] | None = None,
-    check: Check = nothing,
-) -> ByArcs | None:
-    """An optimal flight to the circle of `radius` followed to the flight's own circle, in steps of the radius's
-    logarithm with secant prediction. begin : the flight to there, roughly; None where even that is not to be had."""
-    now = right(replace(flight, radius=radius), begin, check)
-    if now is None:
-        return None
-    at, end = float(np.log(radius)), float(np.log(flight.radius))
-    sense, step, circles = float(np.sign(end - at)), FIRST, 1
-    before: tuple[float, Structure] | None = None
-    while at != end:
-        step = min(step, abs(end - at))
-        found = None
-        while found is None and step > SMALLEST:
-            to = end if step >= abs(end - at) else at + sense * step
-            target = flight if to == end else replace(flight, radius=float(np.exp(to)))
-            for guess in _guesses(before, at, now, to):
-                found = right(target, guess, check)
-                if found is not None:
-                    break
-            step = step if found is not None else 0.5 * step
-        if found is None:
-            break
-        before, at, now, step, circles = (at, now), to, found, min(1.5 * step, LARGEST), circles + 1
-        if progress is not None:
-            progress(1 - abs(end - at) / abs(end - np.log(radius)))
-    return ByArcs(flight.radius if at == end else float(np.exp(at)), now, circles)
-
-
-def _guesses(before: tuple[float, Structure] | None, at: float, now: Structure, to: float) -> Iterator[Structure]:
-    if before is not None and before[1].arcs == now.arcs:
-        slope = (now.unknowns - before[1].unknowns) / (at - before[0])
-        yield Structure(now.arcs, now.unknowns + slope * (to - at))
-    yield now

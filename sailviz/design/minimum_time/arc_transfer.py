@@ -10,11 +10,10 @@ from itertools import pairwise
 import numpy as np
 
 from sailviz.constants import AU, DAY, RADIUS_SUN
+from sailviz.design.minimum_time.arc_continuation import ByArcs, follow_arcs
 from sailviz.design.minimum_time.arc_structures import (
-    ByArcs,
     Check,
     Structure,
-    follow_arcs,
     from_extremal,
     misses,
     nothing,
@@ -27,7 +26,7 @@ from sailviz.design.minimum_time.search import search
 from sailviz.design.minimum_time.singular_arcs import KINDS, Arc, propagate_arcs, switching
 from sailviz.design.minimum_time.state_costate import COSTATES, LRX, LVX, LVY, Sail
 
-NEAR = (1.5, 1.25, 1.8)  # circles from which flights are followed, in radii of the start
+NEAR = (1.5, 1.25, 1.8)  # circles from which flights are followed outwards, in radii of the start; inwards, one over it
 DIRECTIONS, SPAN = 256, 2.0  # screened there; flight times looked at, in estimates of the flight time
 MOST = 3  # flights followed from each of them, the fastest
 
@@ -45,7 +44,7 @@ class FarSearch:
     @property
     def tried(self) -> str:
         """In words."""
-        return f"{self.followed} flights to near circles were followed outwards over {self.circles} circles"
+        return f"{self.followed} flights to near circles were followed over {self.circles} circles"
 
 
 def search_by_arcs(
@@ -60,11 +59,11 @@ def search_by_arcs(
     accept, effort : as for `search`."""
     arrived: list[Structure] = []
     farthest: ByArcs | None = None
-    followed = circles = 0
+    followed, circles, outwards = 0, 0, flight.radius > 1
     for near in NEAR:
-        radius = min(near, flight.radius**0.6)
+        radius = min(near, flight.radius**0.6) if outwards else max(1 / near, flight.radius**0.6)
         base = ToCircle(flight.sail, flight.start, radius)
-        easy = search(base, SPAN * flight_time(radius), DIRECTIONS, True, accept, effort=effort)
+        easy = search(base, SPAN * flight_time(radius), DIRECTIONS, outwards, accept, effort=effort)
         check()
         for extremal in easy.extremals[:MOST]:
             check()

@@ -73,8 +73,8 @@ def circle_to_circle(
     Radii in m, characteristic_acceleration in m/s2 at 1 au, scalars; device : a sail's name or a Film. No guess is
     needed: costates from all around are flown roughly, the best finished to a residual under 1e-9 (as a rule 1e-13)
     until several that were far apart agree; where that leads nowhere, more of them, and continuation in the target
-    radius, the film and the acceleration; outwards and for an electric sail first along rows of arcs, some of partial
-    thrust (`arc_structures`). The same input gives the same result, but where it was stopped by time_limit,
+    radius, the film and the acceleration; of an electric sail first along rows of arcs, some of partial thrust
+    (`arc_continuation`). The same input gives the same result, but where it was stopped by time_limit,
     s of wall time. progress(share, words) is called now and then. effort : an `Effort` instead of both.
     """
     _check(device, characteristic_acceleration, initial_radius=initial_radius, final_radius=final_radius)
@@ -101,8 +101,7 @@ def circle_to_circle(
         )  # fmt: skip
 
     found, reached = screened(FIRST), Reached()
-    partial_thrust = ratio > 1 and isinstance(device, str) and device in ELECTRIC_SAILS
-    if not (found.extremals or effort.stopped) and partial_thrust:
+    if not (found.extremals or effort.stopped) and isinstance(device, str) and device in ELECTRIC_SAILS:
         by_arcs = _by_arcs(flight, partial(_flight_time, device, sail), accept, effort)
         if by_arcs is not None and by_arcs.arrived:
             transfer = transfer_by_arcs(flight, by_arcs, str(device), characteristic_acceleration, initial_radius)
@@ -111,7 +110,7 @@ def circle_to_circle(
             reached.circle = by_arcs.farthest.radius, float(np.sum(by_arcs.farthest.structure.lengths))
     if not (found.extremals or effort.stopped):
         found = screened(SECOND)
-    if not (found.extremals or effort.stopped or reached.circle):
+    if not (found.extremals or effort.stopped or (ratio > 1 and reached.circle)):
         followed = _by_detours(flight, device, ratio, accept, effort, reached)
         if followed is not None:
             return result(*followed)
@@ -268,7 +267,7 @@ def _unfound(
 def _by_arcs(
     flight: ToCircle, flight_time: Callable[[float], float], accept: Callable[[np.ndarray], bool], effort: Effort
 ) -> FarSearch | None:
-    """What was followed outwards along rows of arcs; None where the effort ended before."""
+    """What was followed along rows of arcs; None where the effort ended before."""
     with effort.stoppable():
         found = search_by_arcs(
             flight,
@@ -278,7 +277,7 @@ def _by_arcs(
             effort.check,
             effort,
         )
-        effort.count("circles solved on the way outwards", found.circles)
+        effort.count("circles solved on the way", found.circles)
         return found
     return None
 

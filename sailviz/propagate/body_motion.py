@@ -52,6 +52,7 @@ class Body(NamedTuple):
     centre_y: float = 0.0
     centre_z: float = 0.0
     lit: float = 0.0  # 1: light pushes a shape, whose table stands with the device's numbers
+    mass: float = 0.0  # kg, of a craft whose film ages, whose dose stands in the state in its place; 0: it does not age
     gradient: float = 0.0  # 1: gravity differs across the craft
     air: float = 0.0  # 1: air pushes a shape, by `body_air`
     cos_roll: float = 1.0  # of the attitude that a controller follows
@@ -78,7 +79,8 @@ BODY = layout(Body)
 WORK = len(Body._fields)  # where what goes to and fro between the right-hand side and a controller stands, then rows:
 Y, ACCELERATION, LOADS, DONE, RATES = 0, SIZE, SIZE + 3, SIZE + 13, SIZE + 19  # state; m/s2; see `asked`; force, torque
 AIR = SIZE + 24  # what `body_air` says of the moment
-HEAD = WORK + AIR + 8  # floats before the rows of vanes and devices
+AGED = AIR + 8  # what `aged_shape_callback` says of it
+HEAD = WORK + AGED + 11  # floats before the rows of vanes and devices
 
 
 def packed(body: Body, rows: Sequence[Sequence[float]] = ()) -> list[float]:
@@ -125,6 +127,32 @@ def gradient_torque(b, x, y, z, mu, ex, ey, ez, fx, fy, fz, gx, gy, gz):
 
 
 @inlined
+def aged_light(t, y, factor, p):
+    """What the device's callback says of the light on a film that ages: (force N, torque N m about the centre of mass,
+    the light's direction, its 2 P N/m2), along body axes, of an averaged spin inertial. It leaves the rate of the dose
+    too, see `dose_rate`."""
+    call(p.callbacks.device, p.places.device, t, y[0], y[1], y[2], y[3], y[4], y[5], y[6], 0.0, 0.0, 0.0, p, factor)
+    tables = array_at(p.places.address, p.places.end)
+    w = p.places.body + WORK + AGED
+    return (
+        tables[w], tables[w + 1], tables[w + 2], tables[w + 3], tables[w + 4],
+        tables[w + 5], tables[w + 6], tables[w + 7], tables[w + 8], tables[w + 9],
+    )  # fmt: skip
+
+
+@inlined
+def dose_rate(p):
+    """s of full sunlight at 1 au for each s, as `aged_light` has left it."""
+    return array_at(p.places.address, p.places.end)[p.places.body + WORK + AGED + 10]
+
+
+@inlined
+def mass_of(y, b):
+    """kg."""
+    return y[6] if b.mass == 0.0 else b.mass
+
+
+@inlined
 def passive_loads(t, y, factor, p, b):
     """(force of the light N, its torque N m about the centre of mass, the torque of gravity N m, the light's direction,
     its 2 P N/m2), all along body axes, at rest of the actuators but for a mass that has slid."""
@@ -132,7 +160,9 @@ def passive_loads(t, y, factor, p, b):
     ex, ey, ez, fx, fy, fz, gx, gy, gz = axes_of(y[Q], y[Q + 1], y[Q + 2], y[Q + 3])
     px, py, pz, tx, ty, tz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     bx, by, bz, strength = 0.0, 0.0, 1.0, 0.0
-    if b.lit != 0.0:
+    if b.mass != 0.0:
+        px, py, pz, tx, ty, tz, bx, by, bz, strength = aged_light(t, y, factor, p)
+    elif b.lit != 0.0:
         ux, uy, uz, strength = light_at(t, y[0], y[1], y[2], factor, p, tables)
         bx, by, bz = ux * ex + uy * ey + uz * ez, ux * fx + uy * fy + uz * fz, ux * gx + uy * gy + uz * gz
         if strength != 0.0:
@@ -146,10 +176,10 @@ def passive_loads(t, y, factor, p, b):
 
 
 @inlined
-def accelerated(y, px, py, pz, out):
+def accelerated(y, px, py, pz, b, out):
     """Add a force, N in body axes, to the acceleration in out."""
     ex, ey, ez, fx, fy, fz, gx, gy, gz = axes_of(y[Q], y[Q + 1], y[Q + 2], y[Q + 3])
-    inverse = 1.0 / y[6]
+    inverse = 1.0 / mass_of(y, b)
     out[3] += inverse * (px * ex + py * fx + pz * gx)
     out[4] += inverse * (px * ey + py * fy + pz * gy)
     out[5] += inverse * (px * ez + py * fz + pz * gz)
@@ -211,7 +241,9 @@ def spin_average(t, y, factor, p, b):
     tables = array_at(p.places.address, p.places.end)
     zx, zy, zz = spin_axis(y)
     px, py, pz, tx, ty, tz, dx, dy, dz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    if b.lit != 0.0:
+    if b.mass != 0.0:
+        px, py, pz, tx, ty, tz, _, _, _, _ = aged_light(t, y, factor, p)
+    elif b.lit != 0.0:
         ux, uy, uz, strength = light_at(t, y[0], y[1], y[2], factor, p, tables)
         if strength != 0.0:
             at = p.places.device + TABLE
@@ -259,7 +291,9 @@ def averaged_derivative(t, y, factor, p, b, out):
         (tz - along * zz) * inverse,
     )
     out[RATE + 2] = along / b.zz
-    inverse = 1.0 / y[6]
+    if b.mass != 0.0:
+        out[6] = dose_rate(p)
+    inverse = 1.0 / mass_of(y, b)
     out[3], out[4], out[5] = out[3] + px * inverse, out[4] + py * inverse, out[5] + pz * inverse
 
 
@@ -286,8 +320,8 @@ def asked(t, y, p, px, py, pz, dx, dy, dz, ux, uy, uz, strength, out):
 
 @inlined
 def point_normal(y, p, b):
-    """Tell the model's steering where the craft stands, and its air how it is turned."""
-    if b.air != 0.0:
+    """Tell the model's steering where the craft stands, and what callbacks push how it is turned."""
+    if b.air != 0.0 or b.mass != 0.0:
         tables = array_at(p.places.address, p.places.end)
         at = p.places.body + WORK + Y
         for j in range(Q, SIZE):

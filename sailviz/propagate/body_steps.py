@@ -25,6 +25,7 @@ from sailviz.propagate.body_motion import (
     asked,
     averaged_derivative,
     body_of,
+    dose_rate,
     passive_loads,
     point_normal,
     turned,
@@ -52,14 +53,16 @@ def body_derivative(t, y, factor, p, out):
         averaged_derivative(t, y, factor, p, b, out)
         return
     px, py, pz, tx, ty, tz, dx, dy, dz, ux, uy, uz, strength = passive_loads(t, y, factor, p, b)
-    accelerated(y, px, py, pz, out)
+    accelerated(y, px, py, pz, b, out)
+    if b.mass != 0.0:
+        out[6] = dose_rate(p)
     tx, ty, tz = tx + dx, ty + dy, tz + dz
     if b.air != 0.0:  # its force is among those of `derivative`
         qx, qy, qz, dx, dy, dz = air_loads(p)
         px, py, pz, tx, ty, tz = px + qx, py + qy, pz + qz, tx + dx, ty + dy, tz + dz
     if b.motion == CONTROLLED:
         qx, qy, qz, mx, my, mz = asked(t, y, p, px, py, pz, tx, ty, tz, ux, uy, uz, strength, out)
-        accelerated(y, qx, qy, qz, out)
+        accelerated(y, qx, qy, qz, b, out)
         tx, ty, tz = tx + mx, ty + my, tz + mz
     turned(y, tx, ty, tz, b, out)
 

@@ -1,7 +1,8 @@
 """Light on a sail of any shape: force and torque read from tensors and a table over the directions of the light.
 
 The numbers are those of `shapes.light_table`: a head, 55 tensor numbers for either side of the films, and nodes of
-eight numbers on the six faces of a cube. In body axes, over 2 P: forces m2, torques m3 about the origin.
+eight numbers on the six faces of a cube. In body axes, over 2 P: forces m2, torques m3 about the origin. Of a film
+that ages tables of one coefficient each follow, all of one size; what each counts for is set where its dose is known.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import numpy.typing as npt
 from sailviz.compiled import called, entry, inlined
 
 N, RING, STEEPNESS, FRONT, BACK, NODES = 0, 1, 2, 3, 58, 120  # as `shapes.light_table` writes them
+GROUPS, CHANGES, AREA = 113, 114, 118
 J0, J1, J2, L, K1, K2, COLUMNS = 0, 3, 9, 19, 28, 37, 8
 
 
@@ -160,6 +162,33 @@ def push(x, y, z, a, at):
     return fx + w * gx, fy + w * gy, fz + w * gz, tx + w * hx, ty + w * hy, tz + w * hz
 
 
+@inlined
+def stride(a, at):
+    """How many numbers a table has."""
+    rows = int(a[at + N] + 1.0 + 2.0 * a[at + RING])
+    return NODES + 6 * rows * rows * COLUMNS
+
+
+@called
+def aged_push(x, y, z, a, at):
+    """As `push`, of a film that ages: what its coefficients have changed by counts too."""
+    fx, fy, fz, tx, ty, tz = push(x, y, z, a, at)
+    step = stride(a, at)
+    for i in range(int(a[at + GROUPS])):
+        k = a[at + CHANGES + i]
+        if k != 0.0:
+            gx, gy, gz, hx, hy, hz = push(x, y, z, a, at + (i + 1) * step)
+            fx, fy, fz, tx, ty, tz = fx + k * gx, fy + k * gy, fz + k * gz, tx + k * hx, ty + k * hy, tz + k * hz
+    return fx, fy, fz, tx, ty, tz
+
+
+@called
+def exposure(x, y, z, a, at):
+    """Share of a film that ages on whose front light along u falls, across the light: cos(alpha) of a flat one."""
+    fx, fy, fz, _, _, _ = push(x, y, z, a, at + stride(a, at))
+    return max(0.0, fx * x + fy * y + fz * z) / a[at + AREA]
+
+
 @entry("d2 d1 D2")
 def _read(u, numbers, out):
     for i in range(len(u)):
@@ -175,3 +204,13 @@ def force_and_torque(u: npt.ArrayLike, numbers: np.ndarray) -> tuple[np.ndarray,
     out = np.empty((len(rows), 6))
     _read(rows, numbers, out)
     return out[:, :3].reshape(given.shape), out[:, 3:].reshape(given.shape)
+
+
+def aged_force_and_torque(u: np.ndarray, numbers: np.ndarray, changes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The same of a film that ages. u (n, 3), changes (n, k) of its coefficients, see GROUPS."""
+    one = numbers[: stride.py_func(numbers, 0)]
+    force, torque = force_and_torque(u, one)
+    for i in range(int(numbers[GROUPS])):
+        more, turn = force_and_torque(u, numbers[(i + 1) * len(one) :][: len(one)])
+        force, torque = force + changes[:, i, None] * more, torque + changes[:, i, None] * turn
+    return force, torque

@@ -47,8 +47,10 @@ class Craft:
     rise: float = 0.0  # of one whose tethers are parabolas: how far downwind their tips are, over their reach
     parts: tuple[CraftPart, ...] = field(default=(), compare=False, repr=False)  # of a sail with a shape, its mesh
     # of such a sail, what tells the pressure of light on its facets, part after part: directions of the light (n, 3) in
-    # body axes -> (n, k) over twice the radiation pressure, 0 in the shade
-    pressure: Callable[[np.ndarray], np.ndarray] | None = field(default=None, compare=False, repr=False)
+    # body axes, and doses (n,) s of films that age or None -> (n, k) over twice the radiation pressure, 0 in the shade
+    pressure: Callable[[np.ndarray, np.ndarray | None], np.ndarray] | None = field(
+        default=None, compare=False, repr=False
+    )
     shape: str = ""  # of such a one: kind, hashes of facets, file and table, facets, area m2, as JSON
 
 

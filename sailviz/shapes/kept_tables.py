@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -50,19 +50,46 @@ def table_of(
     progress: Callable[[float], None] | None = None,
 ) -> LightTable:
     """`light_table.build`, from the disk where it has been made before."""
-    light_table.check(shape, cells)
-    word = key(shape, cells, shadow, interpolation, law)
-    place = folder()
-    file = None if place is None else place / f"{word}.table"
-    ring = light_table.INTERPOLATIONS[interpolation]
+    return tables_of([shape], cells, shadow=shadow, interpolation=interpolation, law=law, progress=progress)[0]
+
+
+def tables_of(
+    shapes: Sequence[Shape],
+    cells: int = CELLS,
+    *,
+    shadow: bool = True,
+    interpolation: str = "bilinear",
+    law: Law = LIGHT,
+    progress: Callable[[float], None] | None = None,
+) -> list[LightTable]:
+    """`light_table.build_all`, each from the disk where it has been made before."""
+    place, ring = folder(), light_table.INTERPOLATIONS[interpolation]
     count = NODES + 6 * (cells + 1 + 2 * ring) ** 2 * COLUMNS
-    found = None if file is None else _read(file, count)
-    if found is not None:
-        return LightTable(found, ray_caster() if shadow and may_shade(shape) else "none")
-    made = light_table.build(shape, cells, shadow=shadow, interpolation=interpolation, law=law, progress=progress)
-    if file is not None:
-        _write(file, made.numbers)
-    return made
+    backend = ray_caster() if shadow and may_shade(shapes[0]) else "none"
+    found: dict[int, LightTable] = {}
+    files: list[Path | None] = []
+    for i, shape in enumerate(shapes):
+        light_table.check(shape, cells)
+        word = key(shape, cells, shadow, interpolation, law)
+        files.append(None if place is None else place / f"{word}.table")
+        kept = None if place is None else _read(place / f"{word}.table", count)
+        if kept is not None:
+            found[i] = LightTable(kept, backend)
+    missing = [i for i in range(len(shapes)) if i not in found]
+    if missing:
+        made = light_table.build_all(
+            [shapes[i] for i in missing],
+            cells,
+            shadow=shadow,
+            interpolation=interpolation,
+            law=law,
+            progress=progress,
+        )
+        for i, one in zip(missing, made, strict=True):
+            found[i], file = one, files[i]
+            if file is not None:
+                _write(file, one.numbers)
+    return [found[i] for i in range(len(shapes))]
 
 
 def _read(file: Path, count: int) -> np.ndarray | None:

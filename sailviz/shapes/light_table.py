@@ -9,16 +9,19 @@ an option, bicubically. A bare sail inside its cone is exact: the tensors have i
 
 Everything over 2 P: forces m2, torques m3 about the origin. The numbers are those that
 `propulsion.shaped_sail` reads.
+
+The force of a film is linear in its coefficients, and shadows do not ask for them: of a film that ages, tables of one
+coefficient each follow that of the fresh one, and what they count for is what the coefficient has changed by.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from sailviz.shapes.facets import Shape
+from sailviz.shapes.facets import Coefficients, Shape, Surface
 from sailviz.shapes.light_force import LIGHT, Law, Tensors, force_and_torque, tensors
 from sailviz.shapes.shadows import Shadows
 
@@ -30,6 +33,8 @@ MOST_FACETS = 200_000
 COLUMNS = 8  # of a node: force, torque, two that fill a cache line
 # places in the numbers: cells along a side, ring outside a face, 1 / w; then the tensors of front and back, the nodes
 N, RING, STEEPNESS, FRONT, BACK, NODES = 0, 1, 2, 3, 58, 120
+# of a film that ages: how many tables of one coefficient follow, what each counts for, m2 of the film
+GROUPS, CHANGES, AREA = 113, 114, 118
 STEP = 1e300  # 1 / w where w = 0
 # the axes of p and q of the faces x, -x, y, -y, z, -z
 ACROSS = ((1, 2), (1, 2), (0, 2), (0, 2), (0, 1), (0, 1))
@@ -107,13 +112,25 @@ def exact(
     progress: Callable[[float], None] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """(force (n, 3) m2, torque (n, 3) m3) over 2 P of the facets, shaded where `shadows` is given. u (n, 3)."""
-    force, torque = np.empty((len(u), 3)), np.empty((len(u), 3))
-    for batch in batches(len(u), len(shape.elements)):
+    return exact_of([shape], u, shadows, law, progress)[0]
+
+
+def exact_of(
+    shapes: Sequence[Shape],
+    u: np.ndarray,
+    shadows: Shadows | None,
+    law: Law = LIGHT,
+    progress: Callable[[float], None] | None = None,
+) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The same of shapes that differ in what their surfaces are, and cast the same shadows."""
+    found = [(np.empty((len(u), 3)), np.empty((len(u), 3))) for _ in shapes]
+    for batch in batches(len(u), len(shapes[0].elements)):
         visible = None if shadows is None else shadows.visible(u[batch], float(law.all_round))
-        force[batch], torque[batch] = force_and_torque(shape, u[batch], visible, law)
+        for shape, (force, torque) in zip(shapes, found, strict=True):
+            force[batch], torque[batch] = force_and_torque(shape, u[batch], visible, law)
         if progress is not None:
             progress(min(1.0, batch.stop / len(u)))
-    return force, torque
+    return found
 
 
 def build(
@@ -129,15 +146,43 @@ def build(
     """The table of a shape. cells : along a side of the cube, even; shadow : whether parts shade each other; samples :
     rays along each side of a facet; progress : hears the share that is done. TableError, NoRaysError (both ValueError)
     where it cannot be made."""
-    check(shape, cells)
+    return build_all(
+        [shape], cells, shadow=shadow, interpolation=interpolation, law=law, samples=samples, progress=progress
+    )[0]
+
+
+def build_all(
+    shapes: Sequence[Shape],
+    cells: int = CELLS,
+    *,
+    shadow: bool = True,
+    interpolation: str = "bilinear",
+    law: Law = LIGHT,
+    samples: int = 1,
+    progress: Callable[[float], None] | None = None,
+) -> list[LightTable]:
+    """The tables of shapes that differ in what their surfaces are, their rays cast once."""
+    for shape in shapes:
+        check(shape, cells)
     ring = INTERPOLATIONS[interpolation]
-    shadows = Shadows(shape, samples) if shadow else None
+    shadows = Shadows(shapes[0], samples) if shadow else None
+    nodes = directions(cells, ring)
+    u, again = distinct(nodes.reshape(-1, 3))
+    found = exact_of(shapes, u, shadows, law, progress)
+    backend = "none" if shadows is None else shadows.backend
+    return [
+        LightTable(_numbers(shape, cells, ring, u, again, *loads), backend)
+        for shape, loads in zip(shapes, found, strict=True)
+    ]
+
+
+def _numbers(
+    shape: Shape, cells: int, ring: int, u: np.ndarray, again: np.ndarray, force: np.ndarray, torque: np.ndarray
+) -> np.ndarray:
+    """Of a table, from force m2 and torque m3 (n, 3) over 2 P in directions u (n, 3), the nodes' places among them."""
     width = width_of(shape)
     front, back = tensors(shape, "front"), tensors(shape, "back")
     of_facets = tensors(shape, "front", smooth=False), tensors(shape, "back", smooth=False)
-    nodes = directions(cells, ring)
-    u, again = distinct(nodes.reshape(-1, 3))
-    force, torque = exact(shape, u, shadows, law, progress)
     # what the facets leave over their own tensors is added to the tensors of the surface that they stand for
     part, turn = by_tensors(*of_facets, width, u)
     rows = np.zeros((len(u), COLUMNS))
@@ -145,7 +190,28 @@ def build(
     head = np.zeros(NODES)
     head[:FRONT] = cells, ring, 1.0 / width if width else STEP
     head[FRONT:BACK], head[BACK : BACK + 55] = front.numbers(), back.numbers()
-    return LightTable(np.concatenate([head, rows[again].ravel()]), "none" if shadows is None else shadows.backend)
+    return np.concatenate([head, rows[again].ravel()])
+
+
+def of_one_coefficient(shape: Shape, back: bool) -> list[Shape]:
+    """The shape with one coefficient 1 and all others 0: of its films' fronts b1, b2, b3, and of their backs b3 where
+    asked for."""
+    none = Coefficients(0.0, 0.0, 0.0)
+    pairs = [(Coefficients(*row), none) for row in np.eye(3).tolist()]
+    if back:
+        pairs.append((none, Coefficients(0.0, 0.0, 1.0)))
+    return [
+        Shape(tuple(replace(part, surface=Surface(*pair) if part.is_film else Surface(none)) for part in shape.parts))
+        for pair in pairs
+    ]
+
+
+def with_age(fresh: LightTable, groups: Sequence[LightTable], area: float) -> LightTable:
+    """The table of a film that ages: the fresh one, then those of `of_one_coefficient`, which count for nothing until a
+    dose is said. area : m2 of the film."""
+    numbers = np.concatenate([fresh.numbers, *(one.numbers for one in groups)])
+    numbers[GROUPS], numbers[AREA] = len(groups), area
+    return LightTable(numbers, fresh.backend)
 
 
 def without_ring(table: LightTable) -> LightTable:

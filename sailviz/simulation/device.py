@@ -127,10 +127,8 @@ def _solar_sail(device: SolarSail, scene: Scene, design: Any) -> LoweredDevice:
     film = _film(device)
     strength = _film_strength(device, scene, design) * AU**2 / film.total
     numbers = solar_sail.Parameters(strength, film.b1, film.b2, film.b3)
-    if device.ageing is not None:
-        return LoweredDevice(dynamics.SOLAR_SAIL, numbers, film_thrust())
     if device.shape is None:
-        return LoweredDevice(dynamics.SOLAR_SAIL, numbers)
+        return LoweredDevice(dynamics.SOLAR_SAIL, numbers, None if device.ageing is None else film_thrust())
     from sailviz.simulation.sail_shape import thrust_of_shape  # trimesh, which flat sails do without
 
     pressure = radiation_pressure(scene)

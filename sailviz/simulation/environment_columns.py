@@ -13,6 +13,7 @@ from sailviz.environment.sky import CENTRE
 from sailviz.propagate import dynamics, sky_callback, voltage_callback
 from sailviz.propagate import low_orbit_callback as low_orbit
 from sailviz.scene.device import SolarSail
+from sailviz.scene.film import ages
 from sailviz.scene.sky import shadow_kind
 from sailviz.simulation.bodies import epoch_of
 from sailviz.simulation.device import device_of, radiation_pressure, sail_strength
@@ -132,7 +133,8 @@ def torques_of_light(p: Plan, time: Array, states: Array, factor: Array, body: A
         factor = factor * values[sky_callback.SHARE]
     pressure = radiation_pressure(p.scene)
     assert pressure is not None  # as for every sail that does not say its strength
-    torque = light_torque(p.scene, factor * pressure * (AU / distance) ** 2, towards, body)
+    dose = states[6] if ages(p.scene) else None
+    torque = light_torque(p.scene, factor * pressure * (AU / distance) ** 2, towards, body, dose)
     return {f"light_torque_{axis}_N_m": torque[:, i].copy() for i, axis in enumerate("xyz")}
 
 

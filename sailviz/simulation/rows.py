@@ -223,7 +223,7 @@ def _needed(p: Plan, time: np.ndarray, states: np.ndarray, push: np.ndarray, env
     loads = []
     if "light_torque_x_N_m" in environment:
         torque = np.stack([environment[f"light_torque_{axis}_N_m"] for axis in "xyz"], -1)
-        loads.append(Load(states[6][:, None] * push, torque))
+        loads.append(Load(p.masses(states)[:, None] * push, torque))
     if "air_torque_x_N_m" in environment:
         from sailviz.propagate import shape_air_callback as shape_air
 

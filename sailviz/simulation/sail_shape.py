@@ -18,8 +18,10 @@ from sailviz.propagate import shape_air_callback
 from sailviz.propagate.callbacks import Callback
 from sailviz.propagate.shape_callback import WEAK, shape_thrust
 from sailviz.propulsion import shaped_sail
-from sailviz.propulsion.solar_sail import FILMS, Film, black_back
+from sailviz.propulsion.film_ageing import Optics, aged_film, worn
+from sailviz.propulsion.solar_sail import FILMS, OPTICS, Film, black_back
 from sailviz.propulsion.surfaces import back_named, film_named, side_of
+from sailviz.scene.attitude import Moving
 from sailviz.scene.device import SolarSail
 from sailviz.scene.named_files import folder_of
 from sailviz.scene.shape import (
@@ -38,7 +40,7 @@ from sailviz.shapes import air_law, kept_tables, membranes, shadows, structures
 from sailviz.shapes.facets import Coefficients, Part, Shape, Surface, subdivided
 from sailviz.shapes.file_checks import ShapeError
 from sailviz.shapes.light_force import LIGHT, Law, pressure
-from sailviz.shapes.light_table import LightTable
+from sailviz.shapes.light_table import LightTable, of_one_coefficient, with_age
 from sailviz.shapes.own_files import read_parts, shape_of
 from sailviz.simulation.lowered import Array
 from sailviz.steering import optimal_pitch
@@ -57,17 +59,41 @@ class SailShape(NamedTuple):
     shape: Shape
     table: LightTable
     air: LightTable | None  # of the law of the air, where that pushes it
+    surface_at: Callable[[float], Surface] | None  # of a film that ages, at a dose in s
     facts: dict[str, Any]
 
     def facing(self) -> float:
         """Force along its axis over 2 P, m2, where it faces the light."""
         return float(shaped_sail.force_and_torque([0.0, 0.0, 1.0], self.table.numbers)[0][2])
 
-    def pressures(self, u: np.ndarray) -> np.ndarray:
-        """Pressure of light (n, k) over 2 P on its facets, for directions u (n, 3) in body axes."""
+    def at_dose(self, dose: float) -> Shape:
+        """The shape whose films have had a dose, s."""
+        if self.surface_at is None:
+            return self.shape
+        film = self.surface_at(dose)
+        parts = (replace(part, surface=film) if part.is_film else part for part in self.shape.parts)
+        return Shape(tuple(parts), self.shape.notes)
+
+    def pressures(self, u: np.ndarray, dose: np.ndarray | None = None) -> np.ndarray:
+        """Pressure of light (n, k) over 2 P on its facets, for directions u (n, 3) in body axes; dose (n,) s of films
+        that age."""
         caster = shadows.Shadows(self.shape) if self.facts["shadow"] else None
         visible = [None] * len(u) if caster is None else caster.visible(u)
-        return np.stack([pressure(self.shape, one, seen) for one, seen in zip(u, visible, strict=True)])
+        shapes = [self.shape] * len(u) if dose is None else [self.at_dose(float(one)) for one in dose]
+        rows = zip(shapes, u, visible, strict=True)
+        return np.stack([pressure(shape, one, seen) for shape, one, seen in rows])
+
+    def changes(self, dose: np.ndarray) -> np.ndarray:
+        """By what b1, b2, b3 of the front and b3 of the back have changed at doses (n,) s, (n, 4)."""
+        assert self.surface_at is not None
+        fresh, aged = _four(self.surface_at(0.0)), [_four(self.surface_at(float(one))) for one in dose]
+        return np.array(aged) - fresh
+
+
+def _four(film: Surface) -> np.ndarray:
+    """What of a film changes with its age: b1, b2, b3 of its front, b3 of its back."""
+    assert film.back is not None
+    return np.array([*film.front, film.back.b3])
 
 
 def surface_named(film: str, back: str, closed: bool) -> Surface:
@@ -101,7 +127,8 @@ def sail_shape(scene: Scene, progress: Progress | None = None) -> SailShape:
     file = folder_of(scene) / device.shape.file if isinstance(device.shape, FileShape) else None
     stamp = file.stat().st_mtime_ns if file is not None and file.is_file() else 0
     try:
-        return _built(device.model_dump_json(include={"film", "back", "shape"}), file, stamp, _Held(device, progress))
+        said = device.model_dump_json(include={"film", "back", "shape", "ageing"})
+        return _built(said, file, stamp, _Held(device, progress))
     except SailvizError as error:
         raise SceneError([Fault("device.shape", f"{error}.")], scene.source) from None
     except ValueError as error:
@@ -150,7 +177,29 @@ def _built(said: str, file: Path | None, stamp: int, held: _Held) -> SailShape:
     if section.air is not None:
         of_air, law = _in_air(shape, section.air)
         air, facts["air_table"], _ = _table(of_air, section, law, _share(held.progress, 1, parts))
-    return SailShape(shape, table, air, facts)
+    age = held.device.ageing
+    if age is None:
+        return SailShape(shape, table, air, None, facts)
+    aged = _ageing(shape, table, held.device, own, facts)
+    return SailShape(shape, aged, air, lambda dose: aged_surface(held.device, dose), facts)
+
+
+def _ageing(shape: Shape, fresh: LightTable, device: SolarSail, own: Surface, facts: dict[str, Any]) -> LightTable:
+    """The table of a shape whose films age, and into the facts what it is made of. ShapeError where a film is another
+    than the one that ages, or there is none."""
+    films, section = shape.films, device.shape
+    assert section is not None
+    if not films:
+        raise ShapeError("ageing is that of films, and every part of the shape is a closed body")
+    others = [part.name for part in films if part.surface != own]
+    if others:
+        named = ", ".join(f'"{name[:40]}"' for name in others[:5])
+        raise ShapeError(f"ageing is that of the device's film: no other film is known to age, as that of {named}")
+    shapes = of_one_coefficient(shape, device.back == "black")
+    shadow, interpolation = section.shadow, section.interpolation
+    groups = kept_tables.tables_of(shapes, section.cells, shadow=shadow, interpolation=interpolation)
+    facts["ageing_tables"] = [kept_tables.key(one, section.cells, shadow, interpolation, LIGHT) for one in shapes]
+    return with_age(fresh, groups, shape.film_area)
 
 
 def _share(progress: Progress | None, done: int, parts: int) -> Progress | None:
@@ -200,6 +249,8 @@ def _bus(section: Bus) -> Part:
 def surface_of_film(device: SolarSail) -> Surface:
     """Both sides of the film. ShapeError for a black back of a film that does not say how it radiates."""
     given, back = device.film, device.back
+    if device.ageing is not None:  # of its optics, which change, not the printed numbers
+        return aged_surface(device, 0.0)
     if isinstance(given, str):
         front, optics = side_of(FILMS[given]), None
     else:
@@ -222,11 +273,38 @@ def surface_of_film(device: SolarSail) -> Surface:
     return Surface(Coefficients(*front), Coefficients(*behind))
 
 
+def aged_surface(device: SolarSail, dose: float) -> Surface:
+    """Both sides of a film of known optics at a dose, s. Its front ages; its back stays as it is said, but that a black
+    one, which radiates with the front, gets the less of it the more the front does."""
+    age, back = device.ageing, device.back
+    assert age is not None
+    optics = Optics(*OPTICS[device.film]) if isinstance(device.film, str) else Optics(**device.film.model_dump())
+    front = aged_film(optics, dose, age.factor, age.half_dose)
+    if back == "same":
+        behind = Film.from_optics(*optics)
+    elif back == "black":
+        _, gained = worn.py_func(np.float64(dose), age.factor, np.log(2.0) / age.half_dose)
+        behind = black_back(optics._replace(ef=float(gained * optics.ef)))
+    else:
+        assert back is not None
+        said = back.model_dump()
+        behind = Film(**said) if "b1" in said else Film.from_optics(**said)
+    return Surface(Coefficients(*side_of(front)), Coefficients(*side_of(behind)))
+
+
 def thrust_of_shape(scene: Scene, pressure: float, under_sky: bool) -> Callback:
     """What pushes a sail of a shape. pressure : N/m2 at 1 au."""
-    assert isinstance(scene.device, SolarSail)
-    found = sail_shape(scene)
-    return shape_thrust(2 * pressure * AU**2, under_sky, scene.device.roll or 0.0, found.table.numbers.tolist())
+    device = scene.device
+    assert isinstance(device, SolarSail)
+    found, push, roll = sail_shape(scene), 2 * pressure * AU**2, device.roll or 0.0
+    if found.surface_at is None:
+        return shape_thrust(push, under_sky, roll, found.table.numbers.tolist())
+    from sailviz.propagate.aged_shape_callback import aged_shape_thrust  # machine code that other shapes do without
+
+    assert device.mass is not None  # or the scene would not have been accepted
+    fresh = _four(found.surface_at(0.0)).tolist()
+    turns = isinstance(scene.attitude, Moving)
+    return aged_shape_thrust(turns, push, under_sky, roll, found.table.numbers.tolist(), device.mass, fresh)
 
 
 def acceleration_in_orbit(scene: Scene, pressure: float) -> Callable[[Array], Array]:
@@ -282,8 +360,15 @@ def air_on_shape(scene: Scene) -> list[float] | None:
     return shape_air_callback.numbers(device.roll or 0.0, table.numbers)
 
 
-def light_torque(scene: Scene, pressure: np.ndarray, towards: np.ndarray, axes: np.ndarray) -> np.ndarray:
+def light_torque(
+    scene: Scene, pressure: np.ndarray, towards: np.ndarray, axes: np.ndarray, dose: np.ndarray | None = None
+) -> np.ndarray:
     """Torque (n, 3) N m of the light about the shape's origin, in body axes. pressure (n,) N/m2 where the sail is;
-    towards (n, 3) the way the light travels; axes (n, 3, 3) of the body, as columns."""
-    u = frames.to_frame(axes, towards)
-    return np.asarray(2 * pressure[:, None] * shaped_sail.force_and_torque(u, sail_shape(scene).table.numbers)[1])
+    towards (n, 3) the way the light travels; axes (n, 3, 3) of the body, as columns; dose (n,) s of a film that
+    ages."""
+    u, found = frames.to_frame(axes, towards), sail_shape(scene)
+    if dose is None:
+        torque = shaped_sail.force_and_torque(u, found.table.numbers)[1]
+    else:
+        torque = shaped_sail.aged_force_and_torque(u, found.table.numbers, found.changes(dose))[1]
+    return np.asarray(2 * pressure[:, None] * torque)

@@ -71,7 +71,7 @@ def turned_rows(p: Plan, craft: TurningPlan, time: Array, states: Array, factor:
         columns |= {"slide_x_m": states[SLIDE].copy(), "slide_y_m": states[SLIDE + 1].copy()}
     columns |= {name: values[:, observed.SETTINGS + i].copy() for i, name in enumerate(names)}
     force = values[:, observed.FORCE : observed.FORCE + 3]
-    push = (force if averaged else frames.from_frame(axes, force)) / states[6][:, None]
+    push = (force if averaged else frames.from_frame(axes, force)) / p.masses(states)[:, None]
     return Turned(axes, push, motion, columns)
 
 

@@ -17,6 +17,7 @@ from sailviz.propulsion.solar_sail import Film
 from sailviz.propulsion.surfaces import side_of
 from sailviz.scene import attitude as section
 from sailviz.scene.device import FilmCoefficients, FilmOptics, SolarSail, air_on_facets
+from sailviz.scene.film import ages
 from sailviz.simulation.mass_properties import mass_properties
 from sailviz.steering import attitude
 
@@ -71,6 +72,8 @@ def turning_of(scene: Scene, steered: LoweredSteering) -> Turning | None:
     lit = isinstance(scene.device, SolarSail)
     body = Body(FREE, *six(inertia), *six(np.linalg.inv(inertia)), *centre.tolist())
     body = body._replace(lit=float(lit), gradient=float(said.gravity_gradient), air=float(air_on_facets(scene.device)))
+    if ages(scene):
+        body = body._replace(mass=scene.device.mass or 0.0)
     if isinstance(said, section.SpinAveragedAttitude):
         return Turning(body._replace(motion=AVERAGED), (), ())
     if not isinstance(said, section.ControlledAttitude):

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 import rerun as rr
 
+from sailviz.constants import YEAR
 from sailviz.frames import unit
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.log import Picture, f4
@@ -86,7 +87,8 @@ def log_facets(picture: Picture, story: Story, path: str) -> None:
     light = light[rows]
     acted = story.samples.run.environment
     share = np.asarray(acted.get("sunlit_fraction", acted.get("sunlit", np.ones(len(story.time)))), float)
-    pressure = craft.pressure(light) * share[rows, None]
+    dose = story.samples.run.film.get("dose_yr")
+    pressure = craft.pressure(light, None if dose is None else dose[rows] * YEAR) * share[rows, None]
     colors = np.repeat(packed(colors_of(pressure / max(float(pressure.max()), 1e-300))), 3, axis=1)
     columns = rr.Mesh3D.columns(vertex_colors=colors.ravel())
     picture.log_columns(path, story.samples.index_of(rows), columns.partition([len(faces) * 3] * len(rows)))

@@ -14,10 +14,6 @@ if TYPE_CHECKING:
 
 OPTICS = ", ".join(f'"{word}"' for word in WITH_OPTICS if word != "ideal")
 NEEDS_OPTICS = f"needs the optics of the film: {OPTICS}, or film = {{cr, cs, Bf, Bb, ef, eb}}"
-NO_AGE_OF_A_SHAPE = (
-    "the forces on a shape stand in a table of a film that stays as it is: fly it flat, without device.shape, or give "
-    "the shape the film of one age, film = {cr, cs, Bf, Bb, ef, eb}"
-)
 NO_HEAT = "a film that radiates nothing has no temperature: its emissivities are 0"
 
 
@@ -46,8 +42,10 @@ def _ageing(scene: Scene) -> Faults:
     where, found = "device.ageing", list[tuple[str, str]]()
     if not has_optics(device):
         found.append((where, NEEDS_OPTICS))
-    if device.shape is not None:
-        found.append((where, NO_AGE_OF_A_SHAPE))
+    turned = [scene.attitude, *(phase.attitude for phase in scene.phase)]
+    kinds = {one.kind for each in turned for one in getattr(each, "actuators", None) or []}
+    for kind in sorted(kinds & {"vane", "reflectivity"}):
+        found.append((where, f'the film of an actuator of kind "{kind}" stays as it is: turn the craft by others'))
     if device.control is not None:
         found.append(
             (where, "a film that darkens when it is told to ages in a way that is not known: control or ageing")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from independent.constants import AU, EPSILON
 from independent.film import film_force, film_of
+from independent.shapes import PRESSURE, cap
 from independent.steering import normal
 
 TABLE_3_1 = {  # cr, cs, Bf, Bb, ef, eb
@@ -48,6 +49,8 @@ def ageing_sail(scene):
         one.film = Optics(fresh.cr * mirror, fresh.cs * mirror, fresh.Bf, fresh.Bb, fresh.ef * front, fresh.eb)
         return film_of(one)
 
+    if craft.shape is not None:
+        return _ageing_cap(scene, film)
     first = sum(film(0.0)[:3])
 
     def push(t, r, v, dose):
@@ -59,6 +62,25 @@ def ageing_sail(scene):
         light, along = film_force(aged, cosine)
         share = craft.characteristic_acceleration * sum(aged[:3]) / first
         return share * near * (light * r / size + along * n), near * cosine
+
+    return push
+
+
+def _ageing_cap(scene, film):
+    """The same of part of a sphere whose front alone is lit: its film is 2 / (1 + cos) times as large as its mouth."""
+    shape, mass = scene.device.shape, scene.device.mass
+    assert shape.kind == "cap"
+    shown = (1 + np.cos(shape.edge_slope)) / 2
+
+    def push(t, r, v, dose):
+        n, size = normal(scene, t, r, v), np.linalg.norm(r)
+        x = np.cross(np.cross(r, v), r)
+        x = x - (x @ n) * n
+        x = x / np.linalg.norm(x)
+        axes, near = np.stack([x, np.cross(n, x), n], 1), (AU / size) ** 2
+        u = axes.T @ r / size
+        force = 2 * PRESSURE * near * axes @ cap(shape, film(dose)[:3])(u)
+        return force / mass, near * shown * u[2]
 
     return push
 

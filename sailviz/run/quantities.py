@@ -177,5 +177,6 @@ VALUES: dict[str, Value] = {
     "nutation": _nutation,
     "wheel_momentum": lambda run: np.abs(_wheels(run)).max(axis=1),  # of the wheel that holds most
     "light_torque": _torque("light_torque"),
+    "air_torque": _torque("air_torque"),
     "control_torque": _torque("control_torque"),
 }

@@ -104,6 +104,7 @@ class Crossing(Section):
         "wind_pressure": "jumps whenever the wind is drawn and crosses nothing between: watch thrust_factor",
         "electrochromic_state": "jumps at known times and crosses nothing between them",
         "light_torque": "is made of the attitude, which can be watched: watch pitch or body_rate",
+        "air_torque": "is made of air and attitude, which can be watched: watch air_drag or body_rate",
         "control_torque": "jumps where actuators reach their limits: watch wheel_momentum or body_rate",
         "saturated": "counts a controller's updates: it is no function of state and time",
     }

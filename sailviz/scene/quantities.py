@@ -76,6 +76,7 @@ DIMENSIONS = {
     "nutation": "angle",
     "wheel_momentum": "angular_momentum",
     "light_torque": "torque",
+    "air_torque": "torque",
     "control_torque": "torque",
 }
 

@@ -142,6 +142,7 @@ PlotWord = Literal[
     "thrust_lost",
     "wheel_torque",
     "light_torque",
+    "air_torque",
     "irradiance",
     "electrochromic_state",
 ]

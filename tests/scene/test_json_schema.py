@@ -111,6 +111,7 @@ OTHERS = (
     "torque",
     "storage",
     "control_torque",
+    "air_torque",
 )  # whose units end as those of other dimensions
 
 

@@ -14,7 +14,7 @@ from sailviz.scene.attitude import (
 )
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.records import start_of, steering_of
-from sailviz.scene.device import NoDevice, PlasmaBrake, SolarSail
+from sailviz.scene.device import NoDevice, PlasmaBrake, SolarSail, air_on_facets
 from sailviz.scene.phases import attitude_in
 from sailviz.scene.quantities import spellings
 
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from sailviz.scene.loading import Scene
 
 OF_LIGHT = ("light_torque",)
+OF_AIR = ("air_torque",)
 OF_ACTUATORS = ("control_torque", "wheel_momentum")
 OF_BODY = ("body_rate", "nutation", "wheel_momentum")  # quantities that only a craft that turns has
 DRAWN = "attitudes, rates and inertias are drawn by a sweep, whose flights turn each by itself"
@@ -86,6 +87,8 @@ def expected_of_turning(scene: Scene) -> Faults:
             found.append((where, f'{stem} belongs to actuators: attitude.kind "controlled"'))
         elif stem in OF_LIGHT and not shaped:
             found.append((where, f"{stem} is that of a solar sail with a shape"))
+        elif stem in OF_AIR and not air_on_facets(scene.device):
+            found.append((where, f"{stem} is that of a solar sail whose shape air pushes: device.shape.air"))
     return found
 
 

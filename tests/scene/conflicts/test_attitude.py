@@ -96,6 +96,8 @@ def attitude(**parts):
         ),
         ({"expect": [{"quantity": "wheel_momentum_N_m_s", "at": "end", "value": 1, "within": 1}]}, "expect[0].quantity",
          "belongs to actuators"),
+        ({"expect": [{"quantity": "air_torque_N_m", "at": "max", "value": 1, "within": 1}]}, "expect[0].quantity",
+         "whose shape air pushes"),
     ],
 )  # fmt: skip
 def test_what_an_attitude_does_not_go_together_with_is_said_where_it_stands(given, place, words):

@@ -1,9 +1,9 @@
-"""Craft that turn, in plain numpy: position, velocity, direction cosines and body rate; light facet by facet."""
+"""Craft that turn, in plain numpy: position, velocity, direction cosines, body rate; light and air facet by facet."""
 
 from __future__ import annotations
 
 import numpy as np
-from independent.constants import AU, body
+from independent.constants import AU, ROTATION, body
 from independent.film import film_of
 from scipy.integrate import solve_ivp
 
@@ -60,6 +60,26 @@ def push(scene, u, strength):
     return force, torque
 
 
+def blow(scene, axes, r, v):
+    """(force N, torque N m about the shape's origin), body axes, of hyperthermal air on both sides of the facets."""
+    said, air = scene.device.shape.air, scene.environment.atmosphere
+    if said is None or air is None:
+        return np.zeros(3), np.zeros(3)
+    assert said.law == "hyperthermal"
+    assert air.kind == "exponential"
+    relative = v - np.cross([0, 0, ROTATION if scene.environment.corotation else 0.0], r)
+    speed, height = np.linalg.norm(relative), np.linalg.norm(r) - body(scene)[1]
+    density = air.density * np.exp((air.reference_altitude - height) / air.scale_height)
+    b1, b2 = said.tangential_accommodation / 2, (2 - said.normal_accommodation - said.tangential_accommodation) / 2
+    b3 = said.normal_accommodation * np.sqrt(np.pi * said.wall_temperature_ratio) / (4 * said.speed_ratio)
+    u, force, torque = -axes.T @ relative / speed, np.zeros(3), np.zeros(3)
+    for centre, normal, area in facets(scene.device.shape):
+        c = normal @ u
+        one = 2 * density * speed**2 * area * abs(c) * (b1 * u + (b2 * abs(c) + b3) * np.sign(c) * normal)
+        force, torque = force + one, torque + np.cross(centre, one)
+    return force, torque
+
+
 def wanted(scene, t, r, v):
     """Axes (3, 3), columns, of a table of pitch and clock in the orbital frame."""
     law = scene.steering
@@ -101,7 +121,7 @@ def integrate_turning(scene, run, times):
     def turning(t, y):
         r, v, axes, w, place = y[:3], y[3:6], y[6:15].reshape(3, 3), y[15:18], y[18:]
         u, strength = light(scene, r)
-        force, torque = push(scene, axes.T @ u, strength)
+        force, torque = (a + b for a, b in zip(push(scene, axes.T @ u, strength), blow(scene, axes, r, v), strict=True))
         rate = np.zeros(2)
         c = centre.copy()
         if slide is not None:

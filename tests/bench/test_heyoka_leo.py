@@ -20,7 +20,7 @@ from sailviz.propagate.events import watch
 
 heyoka = pytest.importorskip("heyoka")
 
-PAIRS = 7
+PAIRS, ROUNDS = 7, 5
 GOAL, AT_LEAST = 1e-9, (7.0, 5.0)  # with vectors of eight doubles, and with four, which heyoka uses as well
 RADIUS, MU, J2 = 6378.137e3, 398600.4415e9, 1.08262668e-3
 J2_STRENGTH = 1.5 * J2 * MU * RADIUS**2
@@ -87,15 +87,18 @@ def seconds(run):
 def best(make, tolerances, reference):
     """(run, its error, its tolerance): the fastest within the goal, or the most accurate."""
     size, speed = np.linalg.norm(reference[:3], axis=0), np.linalg.norm(reference[3:], axis=0)
-    found = []
+    good, bad = [], []
     for tolerance in tolerances:
         run = make(tolerance)
         wrong = run() - reference
         error = float((np.linalg.norm(wrong[:3], axis=0) / size).max())
         within = error <= GOAL and (np.linalg.norm(wrong[3:], axis=0) / speed).max() <= 10 * GOAL
-        found.append((not within, min(seconds(run) for _ in range(2)) if within else error, error, tolerance, run))
-    _, _, error, tolerance, run = min(found, key=lambda each: each[:2])
-    return run, error, tolerance
+        (good if within else bad).append((run, error, tolerance))
+    if not good:
+        return min(bad, key=lambda each: each[1])
+    # by turns: the tolerances of one cost almost the same, and whoever is timed while others work would lose
+    taken = np.array([[seconds(run) for run, _, _ in good] for _ in range(ROUNDS)]).min(axis=0)
+    return good[int(taken.argmin())]
 
 
 @pytest.mark.parametrize("name", ORBITS)

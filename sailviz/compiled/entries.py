@@ -22,6 +22,8 @@ _ANSWER = ctypes.c_int64 * 2  # the result, and where an error would be describe
 _STATUS = ctypes.CFUNCTYPE(ctypes.c_int, _PLACE, _PLACE, _PLACE)  # where the result goes, where an error, the arguments
 _REAL, _WHOLE = struct.Struct("d"), struct.Struct("q")
 MISFIT = -1  # result of an entry whose arguments do not fit
+TYPES = (np.ndarray, float, np.float64)  # of what is handed over: the types that compiled code looks for
+_addressof = ctypes.addressof
 
 
 DTYPES: dict[str, np.dtype[Any]] = {
@@ -65,9 +67,8 @@ class Entry:
         self.kernel = called(function)  # for compiled code
         self.declared = kinds
         self.kinds = tuple(Kind(word, record) for word in kinds.split())
-        numbers = [(i, kind.word) for i, kind in enumerate(self.kinds, 2) if not kind.is_array]
-        self._floats = tuple(i for i, word in numbers if word == "d")
-        self._integers = tuple(i for i, word in numbers if word == "i")
+        self._floats = tuple(i for i, kind in enumerate(self.kinds) if kind.word == "d")
+        self._integers = tuple(i for i, kind in enumerate(self.kinds) if kind.word == "i")
         self._count = len(self.kinds)
 
     @property
@@ -109,19 +110,28 @@ class Entry:
         native = self.native
         if native is None:
             return self._called_by_numba(arguments)
-        given = [np.ndarray, float, *arguments]
-        for i in self._floats:
-            given[i] = float(given[i])
-        for i in self._integers:
-            (given[i],) = _REAL.unpack(_WHOLE.pack(given[i]))  # as a float of the same bits
-        handed = tuple(given)
+        if self._integers:
+            given = [*TYPES, *arguments]
+            for i in self._integers:
+                (given[i + len(TYPES)],) = _REAL.unpack(_WHOLE.pack(arguments[i]))  # as a float of the same bits
+            handed = tuple(given)
+        else:  # the way of the integrators: every microsecond here is one of a flight of twenty
+            handed = (*TYPES, *arguments)
         answer = _ANSWER()
-        place = ctypes.addressof(answer)
+        place = _addressof(answer)
         if native(place, place + 8, id(handed)):
             raise RuntimeError(f"{self.name} failed")
-        if answer[0] < 0:
+        result: int = answer[0]
+        return result if result >= 0 else self._converted(arguments)
+
+    def _converted(self, arguments: Sequence[Any]) -> int:
+        """Once more, with every number that is none of Python's and numpy's floats made one."""
+        given = list(arguments)
+        for i in self._floats:
+            given[i] = float(given[i])
+        if all(type(arguments[i]) in TYPES[1:] for i in self._floats):
             raise TypeError(f"{self.name} does not take {self._misfits(arguments)}")
-        return int(answer[0])
+        return self(*given)
 
     def _called_by_numba(self, arguments: Sequence[Any]) -> int:
         misfits = self._misfits(arguments)

@@ -11,7 +11,7 @@ import numpy as np
 HEAD = object.__basicsize__  # of every object; its last word is the type
 TYPE = HEAD - 8
 ITEMS = tuple.__basicsize__
-NUMBER = HEAD  # of a float
+NUMBER = HEAD  # of a float, and of a np.float64
 DATA, AXES, SHAPE, STRIDES, DTYPE, FLAGS = HEAD, HEAD + 8, HEAD + 16, HEAD + 24, HEAD + 40, HEAD + 48  # of an array
 LETTER, ORDER, SIZE = HEAD + 8, HEAD + 10, HEAD + 24  # of a dtype: its kind, its byte order, the size of an item
 WHOLE = ctypes.c_int64
@@ -29,13 +29,16 @@ def is_as_expected() -> bool:
 
 
 def _of_numbers(array: np.ndarray, number: float) -> bool:
-    """Whether a pair holds its items, and a float its number, where they are looked for."""
-    pair = (array, number)
+    """Whether a pair holds its items, and a float, numpy's as well, its number where they are looked for."""
+    pair, of_numpy = (array, number), np.float64(number)
     return bool(
         _read(id(pair) + ITEMS, WHOLE) == id(array)
         and _read(id(pair) + ITEMS + 8, WHOLE) == id(number)
         and _read(id(number) + TYPE, WHOLE) == id(float)
         and _read(id(number) + NUMBER, ctypes.c_double) == number
+        and np.float64.__basicsize__ >= NUMBER + 8
+        and _read(id(of_numpy) + TYPE, WHOLE) == id(np.float64)
+        and _read(id(of_numpy) + NUMBER, ctypes.c_double) == number
     )
 
 

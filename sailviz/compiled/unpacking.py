@@ -16,20 +16,22 @@ from sailviz.compiled import memory
 if TYPE_CHECKING:
     from sailviz.compiled.entries import Kind
 
+TYPES = 3  # before the arguments: `entries.TYPES`
 WORD, REAL, SMALL, BYTE, BIT = ir.IntType(64), ir.DoubleType(), ir.IntType(32), ir.IntType(8), ir.IntType(1)
 
 
 def unpacking(kinds: Sequence[Kind]) -> tuple[Any, Any]:
-    """(fits, arguments) for compiled code, both of the address of a tuple: the types of arrays and of floats, then one
-    argument of each kind. Whether they are of these kinds; and what they are, to be asked only if they are."""
+    """(fits, arguments) for compiled code, both of the address of a tuple: the types of arrays, of floats and of
+    numpy's floats, which lie alike, then one argument of each kind. Whether they are of these kinds; and what they are,
+    to be asked only if they are."""
     wanted = [_type(kind) for kind in kinds]
 
     @intrinsic
     def fits(typing: Any, place: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            array_type, float_type = _item(builder, values[0], 0), _item(builder, values[0], 1)
+            array_type, *float_types = (_item(builder, values[0], n) for n in range(TYPES))
             good = ir.Constant(BIT, 1)
-            for n, kind in enumerate(kinds, 2):
+            for n, kind in enumerate(kinds, TYPES):
                 item = _item(builder, values[0], n)
                 if kind.is_array:
                     # a subclass of ndarray may lie otherwise: what is no array is not looked into
@@ -44,7 +46,9 @@ def unpacking(kinds: Sequence[Kind]) -> tuple[Any, Any]:
                     fit.add_incoming(as_wanted, looked)
                     fit.add_incoming(ir.Constant(BIT, 0), not_looked)
                 else:
-                    fit = builder.icmp_signed("==", _at(builder, item, memory.TYPE, WORD), float_type)
+                    own_type = _at(builder, item, memory.TYPE, WORD)
+                    one, other = (builder.icmp_signed("==", own_type, known) for known in float_types)
+                    fit = builder.or_(one, other)
                 good = builder.and_(good, fit)
             return good
 
@@ -54,7 +58,7 @@ def unpacking(kinds: Sequence[Kind]) -> tuple[Any, Any]:
     def arguments(typing: Any, place: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
             found = []
-            for n, (kind, numba_type) in enumerate(zip(kinds, wanted, strict=True), 2):
+            for n, (kind, numba_type) in enumerate(zip(kinds, wanted, strict=True), TYPES):
                 item = _item(builder, values[0], n)
                 if kind.is_array:
                     found.append(_array(context, builder, item, kind, numba_type))

@@ -4,13 +4,11 @@ Rows are read off the polynomial of a step, of degree 9 in the position; events 
 at which the thrust factor or the steering table has a kink. A step that an event cuts short is made again, shorter, so
 that what follows starts from the end of a step, which is far more accurate than its inside.
 
-`Collocation` keeps everything between calls of `advance`, so a run may be computed in blocks of any size and is the
+`Integration` keeps everything between calls of `advance`, so a run may be computed in blocks of any size and is the
 same to the last bit. Source of the method: gauss_legendre.py; what a step does: collocation_steps.py.
 """
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 
@@ -31,6 +29,7 @@ from sailviz.propagate.collocation_memory import (
     SINCE,
     SPAN,
     aligned_stack,
+    in_one_row,
     load,
     node,
     store,
@@ -96,35 +95,27 @@ STEEP = 16  # the power of the length with which the error of such steps grows, 
 WORST = 1.5  # asked over what a step may err by: so calibrated, smooth flights err by 0.1 to 0.9 of what is asked
 ORDER = 9  # of the velocity between the nodes; the position has one more
 POLYNOMIAL = 28  # rows of Integration.work from here on: coefficients of the last step's polynomial in s
+NODES = POLYNOMIAL + POWERS  # from here on: LENGTH numbers, whose places stand in collocation_memory
 SWEEPS = 9  # place in Integration.counter, after those that all integrators have
 
 
-# copied: a flight of some tens of microseconds is not to wait for its memory
-_WORK, _NODES, _NO_SIGNS = np.zeros((POLYNOMIAL + POWERS, SIZE)), np.zeros(LENGTH), np.zeros(0)
+# a flight of some tens of microseconds is not to wait for its memory: compiled code clears what has to be clear
+_ROWS, _NO_SIGNS = (NODES + 1 + LENGTH // SIZE, SIZE), np.zeros(0)
 _BEGUN = np.zeros(10, dtype=np.int64)
 _BEGUN[IN_USE] = 1
 
 
-class Collocation(NamedTuple):
-    """Everything that an integration remembers between calls."""
-
-    work: np.ndarray  # the first four as in stepping.Integration
-    counter: np.ndarray
-    sign: np.ndarray
-    event: np.ndarray
-    nodes: np.ndarray  # (LENGTH,) see the places of collocation_steps
-
-
-def start(t, position, velocity, mass, events=0) -> Collocation:
-    """A fresh Collocation at time s, position m, velocity m/s, mass kg, with room for a number of events."""
-    work, nodes = _WORK.copy(), _NODES.copy()
-    y = work[Y]
-    y[:3], y[3:6], y[6] = position, velocity, mass
+def start(t, position, velocity, mass, events=0) -> Integration:
+    """A fresh Integration at time s, position m, velocity m/s, mass kg, with room for a number of events."""
+    work = np.empty(_ROWS)
+    place = position.tolist() if isinstance(position, np.ndarray) else position
+    speed = velocity.tolist() if isinstance(velocity, np.ndarray) else velocity
+    work[Y] = (*place, *speed, mass)
     work[CLOCK, TIME] = t
     if events == 0:
-        return Collocation(work, _BEGUN.copy(), _NO_SIGNS, np.empty((1, 9)), nodes)
+        return Integration(work, _BEGUN.copy(), _NO_SIGNS, np.empty((1, 9)))
     event = np.empty((MOST_EVENTS + TWICE * MOST_SAMPLES * events + 1, 9))
-    return Collocation(work, _BEGUN.copy(), np.zeros(events), event, nodes)
+    return Integration(work, _BEGUN.copy(), np.zeros(events), event)
 
 
 def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step, patience=None) -> int:
@@ -132,12 +123,16 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
     argument and status. tolerance : of the position over the distance, and of the velocity over the larger of speed and
     circular speed, in every row."""
     numbers = t_end, tolerance, largest_step
+    if patience is None and out.flags.c_contiguous:  # without what takes a twentieth of a flight of twenty microseconds
+        status = advance_compiled(*s, model.parameters, breaks, factors, *watch, t_out, out, *numbers, 0.0)
+        if status != PAUSED:
+            return status
     return in_pieces(advance_compiled, s, model, (breaks, factors, *watch), t_out, out, numbers, patience)
 
 
-@entry("D2 I1 D1 D2 D1 R1 d1 D1 i1 d1 i1 i1 d1 D2 d d d i", PARAMETERS)
+@entry("D2 I1 D1 D2 R1 d1 D1 i1 d1 i1 i1 d1 D2 d d d d", PARAMETERS)
 def advance_compiled(
-    work, count, sign, event, nodes, parameters, breaks, factors,
+    work, count, sign, event, parameters, breaks, factors,
     kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step, piece,
 ):  # fmt: skip
     """`advance` with its tuples taken apart."""
@@ -148,13 +143,16 @@ def advance_compiled(
     n = t_out.shape[0]
     mu, surface = p.gravity.mu, p.surface.radius
     clock, y, w, new = work[CLOCK], work[Y], work[W], work[NEW]
-    polynomial = work[POLYNOMIAL : POLYNOMIAL + POWERS]
+    polynomial = work[POLYNOMIAL:NODES]
+    nodes = in_one_row(work, NODES * SIZE)
     watched = len(watch.kind)
     at_once = fits_lanes(p)
     burns = p.kinds.device == CALLED or (p.kinds.device == THRUSTER and p.thruster.inverse_exhaust != 0.0)
     burns = burns or p.callbacks.burns != 0
     varies = at_once and p.kinds.device != NO_DEVICE
     if count[STARTED] == 0:
+        for i in range(LENGTH):
+            nodes[i] = 0.0
         begin(s, watch, breaks, factors, p)
         store(nodes, NODE, node())
         nodes[SPAN] = t_end - clock[TIME]
@@ -163,7 +161,7 @@ def advance_compiled(
         nodes[SINCE] = clock[TIME]
     careful = nodes[SPAN] * np.sqrt(mu / nodes[SCALE] ** 3) > LONG
     row, ended = open_block(count)
-    pause = count[STEPS] + count[REJECTED] + (piece if piece > 0 else first_piece(p))
+    pause = count[STEPS] + count[REJECTED] + (int(piece) if piece > 0.0 else first_piece(p))
     t, interval = clock[TIME], count[INTERVAL]
     factor = factors[interval] * count[IN_USE]
     if varies:

@@ -65,23 +65,24 @@ def prepare(nodes, t, h, factor, p):
         n_r, n_t, n_h = p.components.radial, p.components.transverse, p.components.normal
     elif kind == attitude.TRANSVERSE:
         n_r, n_t = 0.0, 1.0
+    along, across, changes = 0.0, 0.0, is_table(kind)
     for i in range(8):
-        if is_table(kind):
+        if changes:
             alpha, delta, throttle = attitude.table_row(
                 t + h * nodes[NODE + i], array_at(p.places.address, p.places.end), p.places.steering, p.table.rows,
                 p.table.interpolation,
             )  # fmt: skip
             n_r, n_t, n_h = np.cos(alpha), np.sin(alpha) * np.sin(delta), np.sin(alpha) * np.cos(delta)
-        along, across = 0.0, 0.0
-        if device == SOLAR_SAIL:
-            sail = p.solar_sail
-            along, across = sail_parts(n_r, factor * throttle * sail.strength, sail.b1, sail.b2, sail.b3)
-        elif device == ELECTRIC_SAIL:
-            esail = p.electric_sail
-            ac = factor * throttle * esail.characteristic_acceleration
-            along, across = esail_parts(n_r, ac, int(esail.model), esail.pitch_limit)
-        if kind == attitude.RADIAL:
-            along, across = along + across, 0.0
+        if i == 0 or changes:
+            if device == SOLAR_SAIL:
+                sail = p.solar_sail
+                along, across = sail_parts(n_r, factor * throttle * sail.strength, sail.b1, sail.b2, sail.b3)
+            elif device == ELECTRIC_SAIL:
+                esail = p.electric_sail
+                ac = factor * throttle * esail.characteristic_acceleration
+                along, across = esail_parts(n_r, ac, int(esail.model), esail.pitch_limit)
+            if kind == attitude.RADIAL:
+                along, across = along + across, 0.0
         nodes[PARTS + i], nodes[PARTS + 8 + i] = along, across
         nodes[PARTS + 16 + i], nodes[PARTS + 24 + i], nodes[PARTS + 32 + i] = n_r, n_t, n_h
 

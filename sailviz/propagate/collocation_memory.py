@@ -32,7 +32,7 @@ LENGTH = 376
 
 
 LANES = "sailviz.propagate.lanes"
-aligned_stack = late(LANES, "aligned_stack")
+aligned_stack, in_one_row = late(LANES, "aligned_stack"), late(LANES, "in_one_row")
 load, store, spread, lane = (late(LANES, name) for name in ("load", "store", "spread", "first"))
 total, smallest, product_left = (late(LANES, name) for name in ("total", "smallest", "product_left"))
 # of two halves, quarters, eighths: the numbers that are added when the sums of several lanes are made at once

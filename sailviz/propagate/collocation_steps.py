@@ -26,7 +26,6 @@ from sailviz.propagate.collocation_memory import (
     HELD,
     MASS,
     MIDDLE,
-    NODE,
     PAST,
     PLACE,
     POWERS,
@@ -61,6 +60,7 @@ SEVENTH, SIXTH = 16 / 429, 16 / 231  # what P_7 and P_6 have of s^7 and s^6, inv
 ROUNDING = 1e-28  # of accelerations, squared, over themselves: no sweep makes it smaller
 NOISE = 1e-15  # of a coefficient over the whole, by rounding
 FAR = 20.0  # halves of a step: beyond, its polynomial of degree seven continues rounding and nothing else
+FARTHEST = 3.0  # rad that a first guess continues a circle
 EQUAL = 1e-9  # of a step: the lengths of steps that differ by less are one
 CORRECTIONS = 1  # to first order, after each evaluation of the forces
 
@@ -86,26 +86,31 @@ def first_guess(nodes, t, h, y, mu, careful):
         return continued(nodes, s, 0), continued(nodes, s, 1), continued(nodes, s, 2)
     r2 = y[0] * y[0] + y[1] * y[1] + y[2] * y[2]
     rate = np.sqrt(mu / (r2 * np.sqrt(r2)))
-    for i in range(8):
-        angle = rate * h * nodes[NODE + i]
-        c, s = -rate * rate * np.cos(angle), -rate * np.sin(angle)
-        for j in range(3):
-            nodes[FORCE + 8 * j + i] = c * y[j] + s * y[3 + j]
-    return load(nodes, FORCE), load(nodes, FORCE + 8), load(nodes, FORCE + 16)
+    angle = max(-FARTHEST, min(FARTHEST, rate * h)) * node()
+    c, s = circular(angle)
+    c, s = -rate * rate * c, -rate * s
+    return c * y[0] + s * y[3], c * y[1] + s * y[4], c * y[2] + s * y[5]
 
 
 @inlined
-def steeper(x, y, z, dx, dy, dz, mu):
-    """The change of the central attraction at x, y, z over dx, dy, dz, to first order."""
-    inverse = 1.0 / np.sqrt(x * x + y * y + z * z)
-    inverse2 = inverse * inverse
-    k = -mu * inverse2 * inverse
+def circular(angle):
+    """Cosine and sine of angles below three, to 6e-5: the first terms of their series, enough for a guess."""
+    q = angle * angle
+    c, s = spread(1.0), spread(1.0)
+    for k in range(12, 0, -2):
+        c, s = 1.0 - c * q * (1.0 / (k * (k - 1))), 1.0 - s * q * (1.0 / (k * (k + 1)))
+    return c, angle * s
+
+
+@inlined
+def steeper(x, y, z, k, inverse2, dx, dy, dz):
+    """The change of the central attraction k (x, y, z) over dx, dy, dz, to first order. inverse2 : 1 / r^2."""
     along = 3.0 * inverse2 * (x * dx + y * dy + z * dz)
     return k * (dx - along * x), k * (dy - along * y), k * (dz - along * z)
 
 
 @inlined
-def corrected(nodes, x, y, z, rx, ry, rz, h2, mu):
+def corrected(nodes, x, y, z, k, inverse2, rx, ry, rz, h2):
     """The change of the accelerations that makes them fit the path, from what they lack now, to first order in the
     central attraction: everything else changes a hundred times less. It costs a third of a sweep and spares four in
     ten (on the sail of tests/bench 117 are left of 184)."""
@@ -115,7 +120,7 @@ def corrected(nodes, x, y, z, rx, ry, rz, h2, mu):
         store(nodes, CHANGE + 8, cy)
         store(nodes, CHANGE + 16, cz)
         dx, dy, dz = position_sums(nodes, CHANGE)
-        jx, jy, jz = steeper(x, y, z, h2 * dx, h2 * dy, h2 * dz, mu)
+        jx, jy, jz = steeper(x, y, z, k, inverse2, h2 * dx, h2 * dy, h2 * dz)
         cx, cy, cz = rx + jx, ry + jy, rz + jz
     return cx, cy, cz
 
@@ -139,18 +144,19 @@ def sweep(nodes, work, t, h, enough, at_once, burns, careful, factor, p):
         x, yy, z = x0 + (hc * u0 + h2 * sx), y0 + (hc * v0 + h2 * sy), z0 + (hc * w0 + h2 * sz)
         vx, vy, vz = velocity_sums(nodes, FORCE)
         vx, vy, vz = u0 + h * vx, v0 + h * vy, w0 + h * vz
+        r2 = x * x + yy * yy + z * z
+        inverse = 1.0 / np.sqrt(r2)
+        inverse2 = inverse * inverse
+        pull = -p.gravity.mu * inverse2 * inverse
         if at_once:
-            r2 = x * x + yy * yy + z * z
-            inverse = 1.0 / np.sqrt(r2)
             qx, qy, qz = forces_at_once(nodes, x, yy, z, r2 * inverse, inverse, vx, vy, vz, y[6], factor, p)
-            pull = -p.gravity.mu * (inverse * inverse) * inverse
             px, py, pz = pull * x, pull * yy, pull * z
             gx, gy, gz = px + qx, py + qy, pz + qz
         else:
             gx, gy, gz = forces_one_by_one(nodes, work, t, h, x, yy, z, vx, vy, vz, factor, p, burns)
-            px, py, pz, pull = gx, gy, gz, spread(0.0)
-            qx, qy, qz = pull, pull, pull
-        cx, cy, cz = corrected(nodes, x, yy, z, gx - fx, gy - fy, gz - fz, h2, p.gravity.mu)
+            px, py, pz = gx, gy, gz
+            qx, qy, qz = spread(0.0), spread(0.0), spread(0.0)
+        cx, cy, cz = corrected(nodes, x, yy, z, pull, inverse2, gx - fx, gy - fy, gz - fz, h2)
         change = total((gx - fx) * (gx - fx) + (gy - fy) * (gy - fy) + (gz - fz) * (gz - fz))
         if burns:  # the mass rate counts as the accelerations do: its share of the mass like theirs of the distance
             share = load(nodes, MASS) - load(nodes, FORCE + 24)
@@ -176,12 +182,12 @@ def sweep(nodes, work, t, h, enough, at_once, burns, careful, factor, p):
         lx = rounded_away(nodes, work, h, 0, x, sx, lx)
         ly = rounded_away(nodes, work, h, 1, yy, sy, ly)
         lz = rounded_away(nodes, work, h, 2, z, sz, lz)
-        jx, jy, jz = steeper(x, yy, z, lx, ly, lz, p.gravity.mu)
+        jx, jy, jz = steeper(x, yy, z, pull, inverse2, lx, ly, lz)
         store(nodes, CHANGE, cx + jx)
         store(nodes, CHANGE + 8, cy + jy)
         store(nodes, CHANGE + 16, cz + jz)
         dx, dy, dz = position_sums(nodes, CHANGE)
-        jx, jy, jz = steeper(x, yy, z, h2 * dx + lx, h2 * dy + ly, h2 * dz + lz, p.gravity.mu)
+        jx, jy, jz = steeper(x, yy, z, pull, inverse2, h2 * dx + lx, h2 * dy + ly, h2 * dz + lz)
         if at_once:
             qx, qy = product_left(pull, x, px) + (qx + jx), product_left(pull, yy, py) + (qy + jy)
             qz = product_left(pull, z, pz) + (qz + jz)
@@ -203,7 +209,7 @@ def sweep(nodes, work, t, h, enough, at_once, burns, careful, factor, p):
     store(nodes, FOUND + 16, az)
     if burns:
         store(nodes, FOUND + 24, monomials(nodes, FORCE + 24))
-    nodes[CLOSEST] = np.sqrt(smallest(x * x + yy * yy + z * z))
+    nodes[CLOSEST] = np.sqrt(smallest(r2))
     return True, sweeps
 
 

@@ -247,7 +247,7 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
     return in_pieces(advance_compiled, s, model, (breaks, factors, *watch), t_out, out, numbers, patience)
 
 
-@entry("D2 I1 D1 D2 R1 d1 D1 i1 d1 i1 i1 d1 D2 d d d i", PARAMETERS)
+@entry("D2 I1 D1 D2 R1 d1 D1 i1 d1 i1 i1 d1 D2 d d d d", PARAMETERS)
 def advance_compiled(
     work, count, sign, event, parameters, breaks, factors,
     kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step, piece,
@@ -270,7 +270,7 @@ def advance_compiled(
         clock[STEP] = min(3.0 * tolerance**0.125 * dynamical, largest_step)
     edged = p.callbacks.edges != 0 and (tolerance < WORTH_A_STEP or p.sides.needed != 0)
     row, ended = open_block(count)
-    pause = count[STEPS] + count[REJECTED] + (piece if piece > 0 else first_piece(p))
+    pause = count[STEPS] + count[REJECTED] + (int(piece) if piece > 0.0 else first_piece(p))
     t, interval = clock[TIME], count[INTERVAL]
     factor = factors[interval] * count[IN_USE]
     while True:

@@ -127,7 +127,7 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
     return in_pieces(advance_compiled, s, model, (others, breaks, factors, *watch), t_out, out, numbers, patience)
 
 
-@entry("D2 I1 D1 D2 D2 D1 R1 R1 d1 D1 i1 d1 i1 i1 d1 D2 d d d i", PARAMETERS)
+@entry("D2 I1 D1 D2 D2 D1 R1 R1 d1 D1 i1 d1 i1 i1 d1 D2 d d d d", PARAMETERS)
 def advance_compiled(
     work, count, sign, event, history, grid, parameters, others, breaks, factors,
     kinds, levels, senses, actions, t_out, out, t_end, tolerance, largest_step, piece,
@@ -148,7 +148,7 @@ def advance_compiled(
         derivative(clock[TIME], y, factors[count[INTERVAL]], p, k[0])
         clock[STEP] = step_rule(y, k[0], mu, grid[REFINEMENT], largest_step)[1]
     row, ended = open_block(count)
-    pause = count[STEPS] + count[REJECTED] + (piece if piece > 0 else first_piece(p))
+    pause = count[STEPS] + count[REJECTED] + (int(piece) if piece > 0.0 else first_piece(p))
     t, interval = clock[TIME], count[INTERVAL]
     factor = factors[interval] * count[IN_USE]
     while True:

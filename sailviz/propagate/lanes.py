@@ -21,6 +21,7 @@ from numba.core.datamodel import models
 from numba.core.extending import register_model
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin
+from numba.np.arrayobj import populate_array
 
 COUNT = 8
 REAL, WORD, SHORT = ir.DoubleType(), ir.IntType(64), ir.IntType(32)
@@ -146,6 +147,21 @@ def _place(context, builder, sig, arguments):
     array = context.make_array(sig.args[0])(context, builder, arguments[0])
     place = builder.gep(array.data, [arguments[1]], source_etype=REAL)
     return builder.bitcast(place, VECTOR.as_pointer())
+
+
+@intrinsic
+def in_one_row(typing, array, first):
+    """The numbers of a contiguous array (n, m) from this one on, as an array of one axis that shares them."""
+
+    def generate(context, builder, sig, arguments):
+        whole = context.make_array(sig.args[0])(context, builder, arguments[0])
+        row = context.make_array(sig.return_type)(context, builder)
+        length = builder.sub(whole.nitems, arguments[1])
+        data = builder.gep(whole.data, [arguments[1]], source_etype=REAL)
+        populate_array(row, data, [length], [ir.Constant(WORD, 8)], ir.Constant(WORD, 8), None)
+        return row._getvalue()
+
+    return types.Array(types.float64, 1, "C")(array, types.int64), generate
 
 
 @intrinsic

@@ -51,10 +51,10 @@ class Patience:
         """Let the next piece have this number of steps."""
         self._piece = steps
 
-    def begin_piece(self) -> int:
+    def begin_piece(self) -> float:
         """Steps to try before coming back; 0 for the first piece, whose length compiled code knows: `first_piece`."""
         self._begun = perf_counter()
-        return self._piece
+        return float(self._piece)
 
     def end_piece(self, tried: int, time: float, end: float) -> int:
         """After a piece that came back: whether to go on. time s of flight reached, end s of it wanted."""

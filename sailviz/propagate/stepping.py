@@ -90,28 +90,29 @@ def in_pieces(compiled_advance, s, model, arguments, t_out, out, numbers, patien
     """Let compiled code integrate, piece after piece, until it is done or patience ends. Returns a status.
 
     compiled_advance : takes s, the parameters, the arguments, the rows, the numbers (end of the run, tolerance, largest
-    step) and the number of steps to try before it pauses. out : may be part of a larger array.
+    step) and the number of steps to try before it pauses, a float, as floats are handed over faster. out : may be part
+    of a larger array.
     """
     rows = out if out.flags.c_contiguous else np.ascontiguousarray(out)
-    status = _in_pieces(compiled_advance, s, model, (*arguments, t_out, rows, *numbers), numbers[0], patience)
+    piece = 0.0 if patience is None else patience.begin_piece()
+    status = compiled_advance(*s, model.parameters, *arguments, t_out, rows, *numbers, piece)
+    if status == PAUSED:
+        given = (*s, model.parameters, *arguments, t_out, rows, *numbers)
+        status = _further_pieces(compiled_advance, s, given, numbers[0], Patience() if patience is None else patience)
     if rows is not out:
         out[:] = rows
     return status
 
 
-def _in_pieces(compiled_advance, s, model, arguments, t_end, patience: Patience | None) -> int:
-    status = compiled_advance(*s, model.parameters, *arguments, 0 if patience is None else patience.begin_piece())
-    if status != PAUSED:
-        return int(status)
+def _further_pieces(compiled_advance, s, given, t_end, patience: Patience) -> int:
     count = s.counter
-    patience = Patience() if patience is None else patience
     while True:
         status = patience.end_piece(int(count[STEPS] + count[REJECTED]), time(s), t_end)
         if status != GOES_ON:
             return status
-        status = compiled_advance(*s, model.parameters, *arguments, patience.begin_piece())
+        status = compiled_advance(*given, patience.begin_piece())
         if status != PAUSED:
-            return int(status)
+            return status
 
 
 @inlined

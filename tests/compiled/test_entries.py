@@ -78,6 +78,10 @@ def test_what_does_not_fit_is_refused_and_nothing_is_touched(called):
     x.flags.writeable = False  # what is only read may be
     assert function(x, out, 2, 1) == 4
     assert out.tolist() == [0, 2, 4, 6]
+    for two in (2.0, np.float64(2.0), np.float32(2.0), np.int64(2), np.array(2.0), True + 1):
+        out[:] = 0.0
+        assert function(x, out, two, 0) == 4
+        assert out.tolist() == [0, 2, 4, 6]
 
 
 def test_arrays_that_went_through_another_process_fit(called):

@@ -4,7 +4,8 @@
 
 computes them anew, transfer_times.csv and launch_windows.csv, and says how long: of the windows about four minutes on
 one core, of the flight times about fifteen. `python -m sailviz.figures.transfer_data FOLDER windows` does the windows
-alone.
+alone, `... FOLDER times mercury electric-sail` the flight times to one target with one device, and leaves the others as
+they are.
 """
 
 from __future__ import annotations
@@ -65,17 +66,37 @@ def _rows(name: str) -> Iterator[dict[str, str]]:
         yield from csv.DictReader(file)
 
 
-def compute_times(path: Path) -> None:
-    """Search every flight anew."""
+def compute_times(path: Path, target: str = "", device: str = "") -> None:
+    """Search every flight anew, or those to one target with one device."""
     wanted = {(t, d, a) for t in TARGETS for d in OVER_ACCELERATION for a in ACCELERATIONS}
     wanted |= {(t, d, 1.0) for t in TARGETS[:3] for d in COMPARED}
+    rows: dict[tuple[str, str, float], str] = {}
+    if target:
+        wanted = {key for key in wanted if key[:2] == (target, device)}
+        if not wanted:
+            raise ValueError(f"the table has no flights to {target!r} with {device!r}")
+        rows = {key: row for key, row in _shipped_times().items() if key not in wanted}
+    for key in sorted(wanted, key=_order):
+        begun = perf_counter()
+        flight = transfers.find("earth", key[0], key[1], key[2] * 1e-3).flight
+        _say(f"{key[0]}, {key[1]}, {key[2]:g} mm/s²", begun)
+        rows[key] = f"{flight.time / DAY:.4f},{flight.revolutions:.4f}"
     with files.writing(path, "table") as part, open(part, "w", newline="", encoding="utf-8") as file:
         file.write("target,device,acceleration_mm_s2,time_d,revolutions\n")
-        for target, device, a in sorted(wanted, key=lambda x: (TARGETS.index(x[0]), x[1], -x[2])):
-            begun = perf_counter()
-            flight = transfers.find("earth", target, device, a * 1e-3).flight
-            _say(f"{target}, {device}, {a:g} mm/s²", begun)
-            file.write(f"{target},{device},{a:g},{flight.time / DAY:.4f},{flight.revolutions:.4f}\n")
+        for key in sorted(rows, key=_order):
+            file.write(f"{key[0]},{key[1]},{key[2]:g},{rows[key]}\n")
+
+
+def _order(key: tuple[str, str, float]) -> tuple[int, str, float]:
+    return TARGETS.index(key[0]), key[1], -key[2]
+
+
+def _shipped_times() -> dict[tuple[str, str, float], str]:
+    """(target, device, mm/s2) -> flight time d and revolutions as they are written."""
+    return {
+        (row["target"], row["device"], float(row["acceleration_mm_s2"])): f"{row['time_d']},{row['revolutions']}"
+        for row in _rows(TIMES)
+    }
 
 
 def compute_windows(path: Path) -> None:
@@ -103,9 +124,10 @@ def _say(what: str, begun: float) -> None:
 
 
 if __name__ == "__main__":
-    folder, alone = Path(sys.argv[1]), sys.argv[2:]
+    folder, only = Path(sys.argv[1]), sys.argv[2:]
     at_first = perf_counter()
-    if alone != ["windows"]:
-        compute_times(folder / TIMES)
-    compute_windows(folder / WINDOW_FILE)
+    if only != ["windows"]:
+        compute_times(folder / TIMES, *only[1:])
+    if only[:1] != ["times"]:
+        compute_windows(folder / WINDOW_FILE)
     _say("all of them", at_first)

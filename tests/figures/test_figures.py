@@ -5,9 +5,11 @@ from __future__ import annotations
 import sys
 from itertools import combinations
 
+import numpy as np
 import pytest
 
 from sailviz import figures
+from sailviz.figures import transfer_data
 
 pytest.importorskip("matplotlib")
 
@@ -89,3 +91,11 @@ def test_figures_come_from_the_shell(tmp_path):
         refused = shell(*words)
         assert refused.exit_code == 2
         assert sentence in refused.output
+
+
+def test_shipped_flight_times_have_no_gaps_and_less_thrust_takes_longer():
+    for (target, device), rows in transfer_data.flight_times().items():
+        acceleration, days, _ = rows.T
+        assert np.all(np.isfinite(rows)), (target, device)
+        assert np.all(np.diff(acceleration) > 0)
+        assert np.all(np.diff(days) < 0), (target, device)

@@ -147,14 +147,14 @@ def test_arcs_come_and_go_as_the_target_moves_out():
 def test_a_path_that_turns_back_twice_arrives_at_mercury():
     """At 1.5 mm/s2 thrust, coast, thrust leads inwards to 0.4219 au: there a second coast is born, with which the path
     leads out again to 0.4393 au and then inwards for good. Between the two radii three flights compete."""
-    radius, begin = 0.444, structure("TCT", (-0.64, -0.13, -0.755), (52.3, 73.7, 265.0))
+    radius, begin = 0.4251, structure("TCT", (-0.6420, -0.1306, -0.7555), (61.07, 89.25, 268.88))
     arrived = follow_arcs(problem(1.5, MERCURY), begin, radius)
     assert arrived is not None
     assert (arrived.radius, arrived.structure.arcs) == (MERCURY, "TCTCT")
     assert np.sum(arrived.structure.lengths) * UNIT == pytest.approx(423.415478, abs=1e-6)
     beyond = solve(problem(1.5, 0.41), begin)
     assert beyond is None or faults(problem(1.5, 0.41), beyond)
-    between = problem(1.5, 0.43)
+    between = problem(1.5, 0.4235)
     fastest, one = follow_arcs(between, begin, radius), right(between, begin)
     assert fastest is not None
     assert one is not None

@@ -35,6 +35,8 @@ def direct_words(found: Solution, flight: DirectFlight) -> Iterator[str]:
     rows = [("flight time", f"{flight.days} d, {flight.revolutions:.4f} revolutions about the Sun")]
     rows += [("found by", f"the direct method; {_confirmation(flight)}")]
     rows += [("flown again", f"its table misses the end by {flight.miss:.1e}, worth {flight.error / DAY:.1g} d")]
+    if found.kind == "rendezvous":
+        rows[1:1] = [("departure", _day(flight.leaves)), ("arrival", _day(flight.arrives))]
     if found.kind == "end":
         rows += rows_of_end(found, flight.flown.position, flight.flown.velocity)
     rows += [("closest to the Sun", f"{flight.closest / AU:.4f} au")]
@@ -46,6 +48,7 @@ def direct_words(found: Solution, flight: DirectFlight) -> Iterator[str]:
     for name, value in rows:
         yield f"  {name:<19}{value}"
     yield "  " + flight.claim
+    yield from (f"  Mind: {note}." for note in found.notes)
 
 
 def _held(flight: DirectFlight) -> str:
@@ -95,7 +98,11 @@ def _title(found: Solution) -> str:
     }
     if found.kind == "end":
         return heading(found)
-    return f"{found.origin.name} to {name_of_target(found)}, {ways[found.kind]}"
+    if found.end is not None:
+        title = f"{found.origin.name} past {name_of_target(found)} where it is, at any speed"
+    else:
+        title = f"{found.origin.name} to {name_of_target(found)}, {ways[found.kind]}"
+    return ", ".join(part for part in (title, found.within.words) if part)
 
 
 def _rows(found: Solution, flight: Transfer | OrbitTransfer | Rendezvous) -> list[tuple[str, str]]:
@@ -108,6 +115,8 @@ def _rows(found: Solution, flight: Transfer | OrbitTransfer | Rendezvous) -> lis
     rows = [("flight time", f"{flight.time / DAY:.6f} d, {flight.revolutions:.4f} revolutions about the Sun")]
     if isinstance(flight, Rendezvous):
         rows += [("departure", _day(flight.departure)), ("arrival", _day(flight.arrival))]
+        if found.end is not None:
+            rows += [("passes it at", f"{flight.passing_speed / 1e3:.4f} km/s")]
     elif found.kind == "orbits":
         anomalies = f"{np.degrees(flight.departure_anomaly):.4f}° and {np.degrees(flight.arrival_anomaly):.4f}°"
         rows += [("true anomalies", f"{anomalies} at departure and arrival")]
@@ -126,7 +135,7 @@ def _rows(found: Solution, flight: Transfer | OrbitTransfer | Rendezvous) -> lis
         rows += _partial_voltage(flight)
     rows += [("residual", f"{flight.residual:.1e}, Hamiltonian drift {flight.hamiltonian_drift:.1e}")]
     rows += [("local solutions", f"{flight.solutions} found")]
-    if isinstance(flight, Transfer) and flight.method.startswith("direct"):
+    if isinstance(flight, Transfer | Rendezvous) and flight.method.startswith("direct"):
         rows += [("found by", "the direct method; confirmed by the indirect one, whose numbers these are")]
     return rows
 
@@ -224,13 +233,14 @@ def summary(found: Solution) -> dict[str, Any]:
         "hamiltonian_drift": _known(flight.hamiltonian_drift),
         "local_solutions": flight.solutions,
     }
-    if isinstance(flight, Transfer):
+    if isinstance(flight, Transfer | Rendezvous):
         values |= {"method": flight.method}
     if found.kind == "end":
         values |= values_of_end(found)
     if isinstance(flight, Rendezvous):
         values |= {"departure": str(flight.departure), "arrival": str(flight.arrival)}
         values |= {"slope_d_per_d": _known(flight.slope), "mind": list(found.notes)}
+        values |= {"flyby": found.end is not None, "passing_speed_km_s": _known(flight.passing_speed / 1e3)}
     return values
 
 
@@ -267,6 +277,9 @@ def direct_summary(found: Solution, flight: DirectFlight) -> dict[str, Any]:
         "closest_au": _known(flight.closest / AU),
         "local_solutions": len(flight.solutions),
     }
+    if found.kind == "rendezvous" and flight.feasible:
+        values |= {"departure": str(flight.leaves), "arrival": str(flight.arrives)}
+        values |= {"flyby": found.end is not None, "mind": list(found.notes)}
     return values | (values_of_end(found) if found.kind == "end" else {})
 
 

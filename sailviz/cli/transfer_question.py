@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 
 _WHITHER = (
     click.option("--orbits", is_flag=True, help="In space, between the planets' elliptic orbits, both anomalies free."),
-    click.option("--date", metavar="DATE", help="Meet the body itself, leaving on this date, e.g. 2030-01-01."),
+    click.option(
+        "--date", metavar="DATE", help="Meet the body itself, or pass it, leaving on this date, e.g. 2030-01-01."
+    ),
     click.option(
         "--body-file",
         metavar="FILE",
@@ -69,7 +71,11 @@ _WHITHER = (
 )
 
 _ENDS = (
-    click.option("--flyby", is_flag=True, help="Pass TO, or the circle of --radius-au, at whatever speed."),
+    click.option(
+        "--flyby",
+        is_flag=True,
+        help="Pass the circle of TO or of --radius-au, or with --date TO itself, at whatever speed.",
+    ),
     click.option(
         "--distance-au",
         type=Number(0, 1e3, "au", above=True),
@@ -185,8 +191,6 @@ class Question:
     def _about_the_date(self) -> Iterator[str]:
         ends = self._instead_of_an_orbit
         others = [word for word, said in {"--orbits": self.orbits, "--radius-au": self.radius_au}.items() if said]
-        if self.date is not None and self.flyby:
-            yield "--flyby passes the circle of TO, wherever the body is: no --date."
         if self.date is not None and (others or ends):
             yield f"--date meets a body where it is: {' and '.join([*others, *ends])} does not go with it."
         if self.window is not None and self.date is None:
@@ -199,10 +203,12 @@ class Question:
             "--revolutions": self.revolutions,
         }
         said = [word for word, value in limits.items() if value is not None]
-        planar = not (self.orbits or self.inclination_deg or self.date is not None)
-        if said and not planar:
+        direct = self.method == "direct" or self.limited
+        if self.limited and self.date is not None:
+            yield "--cone-deg and --slew-deg-day are for flights in one plane, without --date."
+        if said and (self.orbits or self.inclination_deg or self.date is not None):
             yield f"{' and '.join(said)}: for flights in one plane, without --orbits, --inclination-deg or --date."
-        if self.perihelion_au is None or self.method == "direct" or self.limited:
+        if self.date is not None or self.perihelion_au is None or direct:
             return
         if not (self.flyby or self._instead_of_an_orbit):
             yield (

@@ -2,7 +2,7 @@
 
     python -m sailviz.figures.transfer_data FOLDER
 
-computes them anew, transfer_times.csv and launch_windows.csv, and says how long: of the windows about four minutes on
+computes them anew, transfer_times.csv and launch_windows.csv, and says how long: of the windows about five minutes on
 one core, of the flight times about fifteen. `python -m sailviz.figures.transfer_data FOLDER windows` does the windows
 alone, `... FOLDER times mercury electric-sail` the flight times to one target with one device, and leaves the others as
 they are.

@@ -76,7 +76,7 @@ def in_the_plane(
     sail turns at FLIP at most, where no rate is given."""
     sail = sail_of(device, characteristic_acceleration)
     begin = first / AU
-    limits = _all_limits(limits, within)
+    limits = all_limits(limits, within)
     aim, last = _aim(end, None if target is None else target / AU, begin, within)
     _check(begin, last, aim, limits, device)
     out = last > begin and not isinstance(aim, (ToCircle, ToState))
@@ -100,7 +100,7 @@ def in_the_plane(
     return polished(found, effort) or found
 
 
-def _all_limits(limits: Limits, within: Bounds) -> Limits:
+def all_limits(limits: Limits, within: Bounds) -> Limits:
     """Those of the sail and those of the flight, in one."""
     if within.perihelion is not None:
         limits = replace(limits, closest=within.perihelion / AU)

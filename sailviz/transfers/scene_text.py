@@ -166,16 +166,22 @@ def _direct_scene(
             if whole and whole.target
             else Place("reached", _plain(reached)).table | {"name": "orbit reached"}
         )
-    e = elements(flight.position, flight.velocity, MU_SUN)
+    dated = whole is not None and whole.kind == "rendezvous" and whole.target is not None
+    if dated and whole is not None and whole.target is not None:
+        target = whole.target.moving_table
+        start = _cartesian(flight.position, flight.velocity)
+    else:
+        e = elements(flight.position, flight.velocity, MU_SUN)
+        start = ['kind = "circular"', f"radius_au = {_number(float(e.semi_major_axis) / AU)}"]
     lines = [
         f"title    = {_text(title or f'{craft}: the fastest way {ways}')}",
         'thesis   = "6"',
         f"about    = {_text(about)}",
         'family   = "transfers"',
+        *([f"epoch    = {np.datetime_as_string(flight.leaves, 'us')}"] if dated else []),
         "",
         "[start]",
-        'kind = "circular"',
-        f"radius_au = {_number(float(e.semi_major_axis) / AU)}",
+        *start,
         "",
         "[device]",
         *_device(flight),
@@ -282,11 +288,7 @@ def _start(flight: Flight, it: replay.Solved, circular: bool) -> list[str]:
     if circular and isinstance(flight, Transfer):
         return ['kind = "circular"', f"radius_au = {_number(flight.initial_radius / AU)}"]
     if isinstance(flight, Rendezvous):
-        return [
-            'kind = "cartesian"',
-            f"position_au = {_list(it.position / AU)}",
-            f"velocity_km_s = {_list(it.velocity / 1e3)}",
-        ]
+        return _cartesian(it.position, it.velocity)
     e = elements(it.position, it.velocity, MU_SUN)
     angles = {name: np.degrees(getattr(e, name)) for name in ("inclination", "raan", "argument", "true_anomaly")}
     return [
@@ -294,6 +296,15 @@ def _start(flight: Flight, it: replay.Solved, circular: bool) -> list[str]:
         f"semi_major_axis_au = {_number(float(e.semi_major_axis) / AU)}",
         f"eccentricity = {_number(float(e.eccentricity))}",
         *(f"{name}_deg = {_number(value)}" for name, value in angles.items()),
+    ]
+
+
+def _cartesian(position: np.ndarray, velocity: np.ndarray) -> list[str]:
+    """A start of a state (3,) m, m/s."""
+    return [
+        'kind = "cartesian"',
+        f"position_au = {_list(position / AU)}",
+        f"velocity_km_s = {_list(velocity / 1e3)}",
     ]
 
 

@@ -27,6 +27,7 @@ from sailviz.design.minimum_time.planet_rendezvous import DATES, Date, Rendezvou
 from sailviz.propulsion.devices import ELECTRIC_SAILS
 from sailviz.propulsion.solar_sail import FILMS, Film
 from sailviz.transfers.direct import METHODS, in_the_plane
+from sailviz.transfers.direct_bodies import to_body
 from sailviz.transfers.ends import NO_BOUNDS, Arrival, Bounds, Distance, End, FlyBy
 from sailviz.transfers.places import Place, circle, names, place, trusted
 from sailviz.words import nearest
@@ -80,15 +81,15 @@ def find(
 
     origin, target : names in PLACES, or a Place. device : a name in SAILS or a Film, characteristic_acceleration m/s2.
     Between circles at the mean distances; with orbits=True, or to an inclined circle, between the orbits in space with
-    free anomalies; with departure, a date or (first, last) as datetime64 or text, from planet to planet. end : what
-    the flight comes to instead of an orbit (`transfers.ends`), within : what it then keeps to, between circles; a
-    target is None but for a FlyBy. starts, dates : of `orbit_to_orbit` and `rendezvous`. method : "indirect", by
-    costates; "direct", by collocation and confirmed by
-    the indirect one, between circles and with the extra `direct` only; "auto", the direct one where the other fails or
-    limits are set: those it keeps to, and an answer under them is a DirectFlight. progress(share, words) is called now
-    and then; after time_limit s of wall time the best so far is the answer, marked; effort : an `Effort` instead of
-    both, which may listen to Ctrl-C. ValueError for what is no place, sail or date; where no flight was found,
-    `Solution.outcome` says whether there is none.
+    free anomalies; with departure, a date or (first, last) as datetime64 or text, from body to body. end : what the
+    flight comes to instead of an orbit (`transfers.ends`), within : what it then keeps to, between circles; a target is
+    None but for a FlyBy, which goes past the body itself where there is a departure. starts, dates : of
+    `orbit_to_orbit` and `rendezvous`. method : "indirect", by costates; "direct", by collocation and confirmed by the
+    indirect one, in the plane or from body to body, with the extra `direct` only; "auto", the direct one where the
+    other fails or limits are set: those it keeps to, and an answer under them is a DirectFlight. progress(share, words)
+    is called now and then; after time_limit s of wall time the best so far is the answer, marked; effort : an `Effort`
+    instead of both, which may listen to Ctrl-C. ValueError for what is no place, sail or date; where no flight was
+    found, `Solution.outcome` says whether there is none.
     """
     effort = Effort.of(effort, progress, time_limit)
     begin = place(origin) if isinstance(origin, str) else origin
@@ -98,14 +99,14 @@ def find(
     in_space = orbits or (aim is not None and aim.inclined)
     _check_method(method, limits, in_space)
     a_c = characteristic_acceleration
+    if departure is not None and aim is not None and (end is None or isinstance(end, FlyBy)):
+        return _at_dates(begin, aim, device, a_c, departure, dates, end, within, method, limits, effort)
     if end is not None or within.any:
         if departure is not None or in_space:
             raise ValueError("other ends and limits are those of flights between circles in one plane")
         return _to_end(begin, aim, device, a_c, end, within, method, limits, effort)
     if aim is None:
         raise ValueError("a flight that has no end of its own needs a target")
-    if departure is not None:
-        return _between_bodies(begin, aim, device, a_c, departure, dates, effort)
     if in_space:
         first = begin if orbits else circle(begin.radius, name=begin.name)
         count = STARTS if starts is None else starts
@@ -181,7 +182,7 @@ def _check_method(method: str, limits: Limits, elsewhere: bool) -> None:
         raise ValueError(f'there is no method "{method}". {nearest(method, METHODS)}')
     if elsewhere and (method == "direct" or limits.any):
         what = "the direct method" if method == "direct" else "a limit on the way"
-        raise ValueError(f"{what} is for flights in one plane")
+        raise ValueError(f"{what} is for flights in one plane, or from body to body on a date")
     if method == "indirect" and limits.any:
         raise ValueError("limits on the way are kept by the direct method only")
 
@@ -191,42 +192,55 @@ def _may_be_direct(device: Film | str) -> bool:
     return there_is_casadi() and (device not in ELECTRIC_SAILS or device == "electric-sail")
 
 
-def _between_bodies(
+def dates_of(flight: Rendezvous | DirectFlight) -> tuple[np.datetime64, np.datetime64]:
+    """Departure and arrival, UTC, of a flight between bodies."""
+    if isinstance(flight, DirectFlight):
+        return flight.leaves, flight.arrives
+    return flight.departure, flight.arrival
+
+
+def _at_dates(
     origin: Place,
     target: Place,
     device: Film | str,
     characteristic_acceleration: float,
     departure: Date | tuple[Date, Date],
     dates: int | None,
+    end: End | None,
+    within: Bounds,
+    method: str,
+    limits: Limits,
     effort: Effort,
 ) -> Solution:
+    """From body to body where they are, or past it: methods as between circles."""
     if origin.body is None or target.body is None:
-        circle = origin if origin.body is None else target
-        raise ValueError(f"a date needs bodies whose places are known, and {circle.name} is none of them")
+        none = origin if origin.body is None else target
+        raise ValueError(f"a date needs bodies whose places are known, and {none.name} is none of them")
+    if within.any or limits.any:
+        raise ValueError("limits on the way are those of flights in one plane: a flight on a date keeps to none")
+    pair = departure if isinstance(departure, tuple | list) else (departure, departure)
     try:
-        first = departure if isinstance(departure, str | np.datetime64) else departure[0]
-        for end in (origin, target):
-            trusted(end, np.datetime64(first).astype("datetime64[ns]"))
+        first, last = (np.datetime64(date).astype("datetime64[ns]") for date in pair)
+    except ValueError:
+        raise ValueError(f"{departure!r} is no date: write 2030-01-01") from None
+    for one in (origin, target):
+        trusted(one, first)
+    flyby, a_c = isinstance(end, FlyBy), characteristic_acceleration
+    found: Rendezvous | DirectFlight | None = None
+    if method != "direct":
         found = rendezvous(
-            target.body,
-            departure,
-            device,
-            characteristic_acceleration,
-            origin=origin.body,
-            dates=DATES if dates is None else dates,
-            effort=effort,
-        )
-    except ValueError as error:
-        if "datetime" in str(error).lower():
-            raise ValueError(f"{departure!r} is no date: write 2030-01-01") from None
-        raise
-    notes = [
-        note
-        for end, date in ((origin, found.departure), (target, found.arrival))
-        if found.feasible
-        for note in trusted(end, date)
-    ]
-    return Solution("rendezvous", origin, target, found, tuple(notes))
+            target.body, (first, last), device, a_c, origin=origin.body, flyby=flyby,
+            dates=DATES if dates is None else dates, effort=effort,
+        )  # fmt: skip
+    if found is None or not (found.feasible or effort.stopped or method == "indirect" or not _may_be_direct(device)):
+        found = to_body(
+            origin.body, target.body, (first, last), device, a_c, flyby=flyby, limits=NO_LIMITS, effort=effort
+        )  # fmt: skip
+    notes: list[str] = []
+    if found.feasible:
+        moments = dates_of(found)
+        notes = [note for one, date in zip((origin, target), moments, strict=True) for note in trusted(one, date)]
+    return Solution("rendezvous", origin, target, found, tuple(notes), end=end, within=within)
 
 
 NOT_SEARCHED = "not searched"  # a flight of a table whose time was over before

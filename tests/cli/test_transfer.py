@@ -7,12 +7,16 @@ import os
 import signal
 import sys
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 import sailviz
+from sailviz import transfers
+from sailviz.checks.expectations import check
 from sailviz.cli import main
 from sailviz.cli import transfer as command
+from sailviz.constants import AU
 from sailviz.design.minimum_time import search
 from sailviz.design.minimum_time.effort import Effort
 
@@ -31,6 +35,20 @@ def test_the_shell_answers_and_writes_a_scene(tmp_path):
     summary = json.loads(ask("earth", "mars", "--json").output)
     assert summary["time_d"] == pytest.approx(407.723742, abs=1e-6)
     assert summary["residual"] < 1e-9
+
+
+def test_a_body_is_passed_where_it_is_and_the_scene_ends_there(tmp_path):
+    file = tmp_path / "apophis.toml"
+    said = ask("earth", "apophis", "--flyby", "--date", "2026-08-16", "-o", file)
+    assert said.exit_code == 0, said.output
+    assert "Earth past Apophis where it is, at any speed" in said.output
+    assert "passes it at       9.8142 km/s" in said.output
+    scene = sailviz.load_scene(file)
+    run = sailviz.simulate(scene)
+    assert all(verdict.passed for verdict in check(scene, run))
+    body = transfers.place("apophis").body
+    there = body.state(np.datetime64("2026-08-16", "ns"), run.time[-1])[0][0]
+    assert np.linalg.norm(run.position[-1] - there) < 1e-7 * AU
 
 
 def test_an_unreachable_target_is_told_and_nothing_is_written():
@@ -99,6 +117,9 @@ def test_a_table_tells_what_was_not_searched_from_what_was_not_found(monkeypatch
         (("earth", "mars", "--table", "--cone-deg", 30), "flights of the indirect method"),
         (("earth", "mars", "--orbits", "--method", "direct"), "flights in one plane"),
         (("earth", "mars", "--cone-deg", 30, "--method", "indirect"), "direct method only"),
+        (("earth", "mars", "--date", "2030-01-01", "--revolutions", 1), "for flights in one plane"),
+        (("earth", "mars", "--date", "2030-01-01", "--slew-deg-day", 1), "for flights in one plane"),
+        (("earth", "mars", "--perihelion-au", 0.5), "or --method direct"),
     ],
 )
 def test_bad_questions_are_answered_in_a_sentence(words, answer):

@@ -49,11 +49,12 @@ def sail_of(device: Film | str, characteristic_acceleration: float) -> FilmSail 
 class DirectFlight:
     """The fastest flight that the direct method found. NaN, feasible False and a reason where it found none.
 
-    time s; departure s after the question's epoch; revolutions about the Sun; costates of the start's state in the
-    question's axes, minus the change of the flight time with it, canonical: estimates; table : the attitudes; arcs :
-    parts of full, no and partial throttle; miss : the largest of the end's conditions that the table's flight by the
-    ordinary propagator leaves, canonical; error s, what that is worth in flight time; closest m; solutions : distinct
-    flight times (k,) s; guesses tried, and of them converged; ending : how the search ended, and what it tried.
+    time s; departure s after the epoch, where the question has dates; revolutions about the Sun; costates of the
+    start's state in the question's axes, minus the change of the flight time with it, canonical: estimates; table : the
+    attitudes; arcs : parts of full, no and partial throttle; miss : the largest of the end's conditions that the
+    table's flight by the ordinary propagator leaves, canonical; error s, what that is worth in flight time; closest m;
+    solutions : distinct flight times (k,) s; guesses tried, and of them converged; ending : how the search ended, and
+    what it tried; epoch : UTC, of a question with dates.
     """
 
     device: Film | str
@@ -77,6 +78,19 @@ class DirectFlight:
     flown: Confirmed | None = None
     nodes: Nodes | None = None
     question: Question | None = None
+    epoch: np.datetime64 | None = None
+
+    @property
+    def leaves(self) -> np.datetime64:
+        """The date of departure, UTC; ValueError where the question has none."""
+        if self.epoch is None:
+            raise ValueError("the flight has no date")
+        return self.epoch + np.timedelta64(round(self.departure * 1e9), "ns")
+
+    @property
+    def arrives(self) -> np.datetime64:
+        """The date of arrival, UTC; ValueError where the question has none."""
+        return self.leaves + np.timedelta64(round(self.time * 1e9), "ns")
 
     @property
     def position(self) -> np.ndarray:

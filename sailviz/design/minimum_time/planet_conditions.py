@@ -54,7 +54,7 @@ from sailviz.elements import elements
 SOLVED = 1e-9  # largest miss of a solution, au and 29.78 km/s
 APART = 10 * SPREAD  # s between speeds that are differenced: moments are rounded to 1e-7 s, the rest as of SPREAD
 STRAYS = 0.02  # of the flight time, from what the slope makes of it: more is another family
-SHORTEST_STEP = 2 * DAY  # s, of the departure of a flight that is handed on
+SHORTEST_STEP = 0.02 * DAY  # s, of the departure of a flight that is handed on: some take 60 days longer for each day
 NEARBY = 15  # steps of a search that begins next to its solution
 SMALLEST_SHIFT = 0.01  # of the way that the target is moved
 
@@ -101,6 +101,10 @@ class Meeting:
         (state,) = self.state(self.origin, unknowns.departure)
         return np.concatenate([state, unknowns.costates])
 
+    def misses(self, ends: np.ndarray, there: np.ndarray) -> np.ndarray:
+        """(n, 6) of what must vanish where flights end (n, 12), the target there (n, 6)."""
+        return ends[:, STATE] - there
+
     def search(
         self,
         unknowns: Unknowns,
@@ -118,7 +122,7 @@ class Meeting:
             starts = np.hstack([np.broadcast_to(start, (len(batch), len(start))), begin])
             ends = costates.fly_all(starts, spans, self.sail, tolerance=tolerance, smoothing=smoothing)
             there = self.state(self.target, unknowns.departure + shift + spans * TIME_UNIT)
-            return np.hstack([ends[:, STATE] - there, off_unit_length(begin)])
+            return np.hstack([self.misses(ends, there), off_unit_length(begin)])
 
         return solved(self.effort.watched(residuals), unknowns, tolerance, most)
 
@@ -149,8 +153,10 @@ class Meeting:
         x, residual = self.search(x, 0.0, TIGHT)
         return x if residual <= SOLVED and self.ends(x, LOOSE).arrival > 0 else None
 
-    def fresh(self, departure: float, planar: PlanarGuess) -> list[Unknowns]:
-        """Solutions for a departure in s after the epoch, from nothing; sorted by flight time."""
+    def fresh(self, departure: float, planar: PlanarGuess | None) -> list[Unknowns]:
+        """Solutions for a departure in s after the epoch, from a flight between circles; sorted by flight time."""
+        if planar is None:
+            return []
         origin, target = self.orbit(self.origin, departure), self.orbit(self.target, departure)
         problem = OrbitProblem(origin, target, self.sail, self.effort)
         (here,) = self.state(self.origin, departure)

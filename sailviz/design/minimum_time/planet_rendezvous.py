@@ -17,6 +17,7 @@ import numpy as np
 from sailviz import ephemeris
 from sailviz.constants import AU, DAY
 from sailviz.design.minimum_time import costates, launch_dates
+from sailviz.design.minimum_time.body_flyby import Passing
 from sailviz.design.minimum_time.effort import Effort, Ending
 from sailviz.design.minimum_time.launch_dates import LocalBest
 from sailviz.design.minimum_time.moving_bodies import MovingBody, Planet
@@ -26,7 +27,6 @@ from sailviz.design.minimum_time.planet_conditions import Meeting
 from sailviz.design.minimum_time.state_costate import (
     POSITION,
     SPEED_UNIT,
-    STATE,
     TIME_UNIT,
     VELOCITY,
     canonical_sail,
@@ -57,13 +57,14 @@ class Window:
 
 @dataclass(frozen=True)
 class Rendezvous:
-    """A flight that meets a body. time s; departure, arrival datetime64; revolutions swept about the Sun; costates
-    (6,) at departure, -d time / d (position, velocity) in units of mu = 1 and one au; hamiltonian, the H that belongs
-    to them: +1 and the planet's motion at the arrival times the costates there, since the end moves; residual, largest
-    miss in the same units; hamiltonian_drift relative, along the flight; solutions distinct ones found for this date,
-    or best dates of the window. position m and velocity m/s (3,) at departure. window : the curve around the best
-    departure, where a window was asked for. slope : d time / d departure, zero but for rounding at a best date.
-    ending : how the search ended.
+    """A flight that meets a body, or passes it. time s; departure, arrival datetime64; revolutions swept about the Sun;
+    costates (6,) at departure, -d time / d (position, velocity) in units of mu = 1 and one au; hamiltonian, the H that
+    belongs to them: +1 and the planet's motion at the arrival times the costates there, since the end moves; residual,
+    largest miss in the same units, of a fly-by also of the primer, which vanishes at the end; hamiltonian_drift
+    relative, along the flight; solutions distinct ones found for this date, or best dates of the window. position m and
+    velocity m/s (3,) at departure. window : the curve around the best departure, where a window was asked for. slope :
+    d time / d departure, zero but for rounding at a best date. passing_speed m/s, past the body, of a fly-by. ending :
+    how the search ended.
 
     feasible False and reason: none was found; time is then NaN.
     """
@@ -86,6 +87,8 @@ class Rendezvous:
     characteristic_acceleration: float
     window: Window | None = None
     slope: float = np.nan
+    passing_speed: float = np.nan
+    method: str = "shooting"
     ending: Ending = field(default_factory=Ending)
 
 
@@ -100,6 +103,7 @@ def rendezvous(
     characteristic_acceleration: float = 1e-3,
     *,
     origin: str | MovingBody = "Earth",
+    flyby: bool = False,
     dates: int = DATES,
     source: str = "mean-elements",
     workers: int = 2,
@@ -111,23 +115,26 @@ def rendezvous(
 
     target, origin : names in `ephemeris.PLANETS`, or bodies such as a `moving_bodies.SmallBodyOrbit`. departure : a
     datetime64 or its text (UTC), or a pair (first, last), whose best date is found to seconds; evenly spread dates of
-    it make its curve. device : a sail's name or a Film. characteristic_acceleration : m/s2. source : of planets, as in
-    `ephemeris.planet_position`. progress(share, words) and time_limit s, or an effort with both: at its end the best
-    so far. Starts and ends with the bodies' velocities; their pull is neglected. Locally optimal, best found: others
-    are not excluded. ValueError for bodies, a window or a thrust that are none.
+    it make its curve. flyby : past the body at any speed, instead of with its velocity. device : a sail's name or a
+    Film. characteristic_acceleration : m/s2. source : of planets, as in `ephemeris.planet_position`. progress(share,
+    words) and time_limit s, or an effort with both: at its end the best so far. Starts with the origin's velocity; the
+    bodies' pull is neglected. Locally optimal, best found: others are not excluded. ValueError for bodies, a window or
+    a thrust that are none.
     """
     effort = Effort.of(effort, progress, time_limit)
     begin, aim = _body(origin, source), _body(target, source)
     _check(aim, begin, characteristic_acceleration)
     first, last = _window(departure)
     sail = canonical_sail(device, characteristic_acceleration)
-    meeting = Meeting(begin, aim, first, sail, effort)
+    meeting = (Passing if flyby else Meeting)(begin, aim, first, sail, effort)
     asked = Asked(meeting, device, characteristic_acceleration)
     length = float((last - first) / np.timedelta64(1, "ns")) * 1e-9
+    planar: PlanarGuess | None = None
     try:
         planar = _planar(asked)
     except NoGuess as none:
-        return _nothing(asked, first, str(none), none.ending)
+        if not flyby:
+            return _nothing(asked, first, str(none), none.ending)
     if length > 0:
         return _best_of_window(asked, planar, length, dates, workers)
     found: list[Unknowns] = []
@@ -137,6 +144,24 @@ def rendezvous(
     if not found:
         return _nothing(asked, first, f"no flight found for {first}")
     return _result(asked, found[0], len(found))
+
+
+def rendezvous_near(
+    meeting: Meeting,
+    guess: Unknowns,
+    length: float,
+    device: Film | str,
+    characteristic_acceleration: float,
+) -> Rendezvous | None:
+    """The flight of a meeting that a good guess leads to, on its date or, in a window of a length in s from the epoch
+    on, on the best date nearby; None where it leads to none."""
+    found: Unknowns | None = None
+    with meeting.effort.stoppable():
+        found = meeting.sharpen(guess)
+        if found is not None and length > 0:
+            best = launch_dates.local_best(meeting, found, 0.0, length)
+            found = found if best is None else best.flight
+    return None if found is None else _result(Asked(meeting, device, characteristic_acceleration), found, 1)
 
 
 @dataclass(frozen=True)
@@ -180,7 +205,7 @@ def _planar(asked: Asked) -> PlanarGuess:
     return planar_guess(problem, asked.device, asked.characteristic_acceleration)
 
 
-def _best_of_window(asked: Asked, planar: PlanarGuess, length: float, dates: int, workers: int) -> Rendezvous:
+def _best_of_window(asked: Asked, planar: PlanarGuess | None, length: float, dates: int, workers: int) -> Rendezvous:
     """The flight of the best date from the epoch to a length in s after it, with the curve of the window."""
     meeting, effort = asked.meeting, asked.meeting.effort
     anchors = np.linspace(0.0, length, int(np.clip(length // APART + 2, FEWEST_ANCHORS, MOST_ANCHORS)))
@@ -209,6 +234,13 @@ def _best_of_window(asked: Asked, planar: PlanarGuess, length: float, dates: int
         effort.report(0.8, "departures")
         begun = _begun(meeting, [*flights, *(x.flight for x in launch_dates.distinct(bests))], times)
         ways = list(pool.map(lambda way: _hand_on(meeting, begun, times, way), (1, -1)))
+        curve = [fastest(point) for point in zip(*ways, strict=True)]
+        effort.report(0.85, "departures")
+        waiting = _waiting_is_faster(curve, times)
+        again = pool.map(lambda i: fastest(meeting.fresh(float(times[i]), planar)), waiting)
+        new = {i: x for i, x in zip(waiting, again, strict=True) if x is not None and x is fastest([x, curve[i]])}
+        begun = [new.get(i, x) for i, x in enumerate(curve)]
+        ways = list(pool.map(lambda way: _hand_on(meeting, begun, times, way, set(new)), (1, -1)))
         curve = [fastest(point) for point in zip(*ways, strict=True)]
         effort.report(0.9, "departures")
         known = launch_dates.distinct(bests)
@@ -262,14 +294,24 @@ def _leads_to(unknowns: Unknowns, best: LocalBest, spacing: float) -> bool:
     return near and unknowns.span >= best.flight.span * (1 - FASTER)
 
 
-def _hand_on(meeting: Meeting, begun: Curve, times: np.ndarray, way: int) -> Curve:
-    """Flights handed on from date to date, wherever they are faster."""
+def _waiting_is_faster(curve: Curve, times: np.ndarray) -> list[int]:
+    """Dates whose flight is not the fastest, or is missing: to wait, the sail edge-on beside the body that is left, for
+    the flight of a later date would come to the target before it."""
+    arrivals = np.array([np.inf if x is None else times[i] + x.span * TIME_UNIT for i, x in enumerate(curve)])
+    later = np.append(np.minimum.accumulate(arrivals[::-1])[::-1][1:], np.inf)
+    return [i for i, x in enumerate(curve) if x is None or arrivals[i] > later[i] * (1 + FASTER)]
+
+
+def _hand_on(meeting: Meeting, begun: Curve, times: np.ndarray, way: int, only: set[int] | None = None) -> Curve:
+    """Flights handed on from date to date, wherever they are faster. only : from these dates on."""
     found, before = list(begun), None
     order = range(len(times)) if way > 0 else range(len(times) - 1, -1, -1)
+    handed = False
     for i in order:
-        if before is not None:
+        if before is not None and (only is None or handed or i - way in only):
             x, here = meeting.carried(before, times[i]), found[i]
-            if x is not None and (here is None or x.span < here.span * (1 - FASTER)):
+            handed = x is not None and (here is None or x.span < here.span * (1 - FASTER))
+            if handed:
                 found[i] = x
         before = found[i]
     return found
@@ -282,7 +324,9 @@ def _result(asked: Asked, unknowns: Unknowns, local: int, window: Window | None 
     (there,) = meeting.state(meeting.target, unknowns.departure + span * TIME_UNIT)
     ends = meeting.ends(unknowns)
     departure = meeting.epoch + np.timedelta64(round(unknowns.departure * 1e9), "ns")
-    where = "the window's dates" if window is not None else f"both ways of meeting {meeting.target.name}"
+    passing = isinstance(meeting, Passing)
+    ways = f"{'the ways past' if passing else 'both ways of meeting'} {meeting.target.name}"
+    where = "the window's dates" if window is not None else ways
     effort.report(1.0, "done")
     return Rendezvous(
         time=float(span * TIME_UNIT),
@@ -290,7 +334,7 @@ def _result(asked: Asked, unknowns: Unknowns, local: int, window: Window | None 
         arrival=departure + np.timedelta64(round(span * TIME_UNIT * 1e9), "ns"),
         revolutions=revolutions(flight.rows),
         costates=unknowns.costates / ends.arrival,
-        residual=float(np.abs(flight.end[STATE] - there).max()),
+        residual=float(np.abs(meeting.misses(flight.end[None], there[None])).max()),
         hamiltonian=flight.hamiltonian / ends.arrival,
         hamiltonian_drift=flight.drift / ends.arrival,
         solutions=local,
@@ -303,6 +347,7 @@ def _result(asked: Asked, unknowns: Unknowns, local: int, window: Window | None 
         characteristic_acceleration=asked.characteristic_acceleration,
         window=window,
         slope=ends.slope,
+        passing_speed=float(np.linalg.norm(flight.end[VELOCITY] - there[VELOCITY]) * SPEED_UNIT) if passing else np.nan,
         ending=effort.found(),
     )
 

@@ -14,12 +14,16 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from sailviz.constants import AU, DAY
+from sailviz.design.direct.limits import Limits
 from sailviz.design.minimum_time import launch_dates, rendezvous
+from sailviz.design.minimum_time.body_flyby import Passing
+from sailviz.design.minimum_time.effort import Effort
 from sailviz.design.minimum_time.moving_bodies import SmallBodyOrbit
 from sailviz.design.minimum_time.planet_conditions import Meeting
 from sailviz.design.minimum_time.state_costate import SPEED_UNIT, TIME_UNIT, canonical_sail
 from sailviz.design.minimum_time.unknowns import Unknowns
 from sailviz.elements import Elements
+from sailviz.transfers import direct_bodies
 
 ELEMENTS = {  # epoch JD TDB, a au, e, i, node, argument, mean anomaly deg
     "Earth": (2451545.0, 1.00000011, 0.01671022, 0.00005, -11.26064, 114.20783, -2.48284),
@@ -157,6 +161,69 @@ def test_the_best_date_of_two_years_from_nothing(name, days, date):
     assert found.time / DAY == pytest.approx(days, abs=1e-6)
     assert julian(found.departure) == pytest.approx(date, abs=1e-4)
     assert len(found.window.best_times) > 2
+
+
+@pytest.fixture(scope="module")
+def past_kamooalewa():
+    return rendezvous(body("Kamooalewa"), utc(2461123.5), origin=body("Earth"), flyby=True)
+
+
+def test_passing_a_body_satisfies_the_necessary_conditions_as_scipy_flies_it(past_kamooalewa, kamooalewa):
+    """Its place is reached, the primer vanishes, and H - lam_r . (velocity of the body) = 1."""
+    found = past_kamooalewa
+    assert found.time < 0.9 * kamooalewa.time
+    start = np.concatenate([place_by_hand("Earth", 2461123.5), found.costates])
+    assert motion_hamiltonian(start) == pytest.approx(found.hamiltonian, abs=1e-9)
+    flown = solve_ivp(motion, (0, found.time / TIME_UNIT), start, "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    there = place_by_hand("Kamooalewa", 2461123.5 + found.time / DAY)
+    assert np.abs(flown[:3] - there[:3]).max() < 2e-10
+    assert np.linalg.norm(flown[9:]) < 1e-8 * np.linalg.norm(start[6:])
+    assert motion_hamiltonian(start) - flown[6:9] @ there[3:] == pytest.approx(1.0, abs=1e-7)
+    speed = np.linalg.norm(flown[3:6] - there[3:]) * SPEED_UNIT
+    assert found.passing_speed == pytest.approx(speed, rel=1e-8)
+
+
+def motion_hamiltonian(y):
+    """Of the ideal sail: lam . motion."""
+    rates = motion(0.0, y)
+    return y[6:9] @ rates[:3] + y[9:] @ rates[3:6]
+
+
+def test_the_slope_of_a_fly_by_is_what_a_day_costs(past_kamooalewa):
+    meeting = Passing(body("Earth"), body("Kamooalewa"), utc(2461123.5), canonical_sail("ideal", 1e-3))
+    lam = past_kamooalewa.costates / np.linalg.norm(past_kamooalewa.costates)
+    x = Unknowns(lam, past_kamooalewa.time / TIME_UNIT, 0.0)
+    before, after = (meeting.nearby(x, day * DAY, 1e-13).span * TIME_UNIT / DAY for day in (-0.05, 0.05))
+    assert (after - before) / 0.1 == pytest.approx(past_kamooalewa.slope, rel=1e-3)
+
+
+def test_direct_method_passes_the_body_in_the_same_time(past_kamooalewa, monkeypatch):
+    pytest.importorskip("casadi")
+    monkeypatch.setattr(direct_bodies, "INTERVALS", 12)
+    monkeypatch.setattr(direct_bodies, "STRETCHES", (1.0,))
+    day = utc(2461123.5)
+    found = direct_bodies.to_body(
+        body("Earth"), body("Kamooalewa"), (day, day), "ideal", 1e-3, flyby=True, limits=Limits(), effort=Effort()
+    )
+    assert found.method == "direct method, then shooting"
+    assert found.time == pytest.approx(past_kamooalewa.time, rel=1e-9)
+    assert found.costates == pytest.approx(past_kamooalewa.costates, rel=1e-6)
+
+
+@pytest.mark.skipif("SAILVIZ_LONG_TESTS" not in os.environ, reason="half a minute of CPU: set SAILVIZ_LONG_TESTS")
+@pytest.mark.parametrize(("name", "flyby"), [("Apophis", False), ("Kamooalewa", False), ("Apophis", True)])
+def test_direct_method_finds_the_best_date_of_a_window_and_costates_confirm_it(name, flyby):
+    pytest.importorskip("casadi")
+    first, last = (2461218.5, 2461398.5) if name == "Apophis" else (2461083.5, 2461163.5)
+    found = direct_bodies.to_body(
+        body("Earth"), body(name), (utc(first), utc(last)), "ideal", 1e-3, flyby=flyby, limits=Limits(), effort=Effort()
+    )
+    assert found.method == "direct method, then shooting"
+    assert abs(found.slope) < 1e-8 or flyby
+    if not flyby:
+        days, date = {"Apophis": (301.3611764, 2461278.32615), "Kamooalewa": (224.8363449, 2461123.27787)}[name]
+        assert found.time / DAY == pytest.approx(days, abs=1e-6)
+        assert julian(found.departure) == pytest.approx(date, abs=1e-4)
 
 
 def test_an_open_orbit_is_refused():

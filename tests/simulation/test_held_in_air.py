@@ -222,3 +222,14 @@ def test_an_averaged_spin_leans_in_air_as_scipy_has_it():
     inertial = frames.from_frame(frames.rotation(run.attitude.quaternion), recorded)
     torque = np.array([mean_torque(row[:3], t) for t, row in zip(run.time, found, strict=True)])
     assert inertial == pytest.approx(torque, abs=1e-6 * np.abs(torque).max())
+
+
+def test_a_craft_that_stands_as_its_law_says_tells_the_air_s_torque_along_its_own_axes():
+    """About the origin of its shape, without an [attitude]: about y alone, since x points towards the flight."""
+    given = scene({}, 4, WANTED)
+    del given["attitude"]
+    run = simulate(given)
+    torque = np.array([blown(wanted(t), *place(t), np.zeros(3))[1] for t in run.time])
+    recorded = np.stack([run.environment[f"air_torque_{axis}_N_m"] for axis in "xyz"], -1)
+    assert torque[:, 1].max() < -4e-3
+    assert recorded == pytest.approx(torque, abs=1e-6 * np.abs(torque).max())

@@ -13,10 +13,11 @@ from typing import Protocol
 
 import numpy as np
 
-from sailviz.design.minimum_time.boundary_conditions import ANOMALY, cartesian, direction, fly, polar
+from sailviz.design.minimum_time.boundary_conditions import ANOMALY, PolarState, cartesian, direction, fly, polar
 from sailviz.design.minimum_time.state_costate import LRX, LRY, LVX, LVY, Sail, X, Y
 
 TURN = 2 * np.pi
+UNIT_CIRCLE = PolarState(1.0, 0.0, 1.0)
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,15 @@ class Polar:
     @property
     def size(self) -> np.ndarray:
         return np.sqrt(self.lam_r**2 + self.lam_u**2 + self.lam_v**2)
+
+
+class Absolute(Polar):
+    """The same, the costates not measured by their length: what a flight that is a little off misses then depends on
+    its unknowns in proportion."""
+
+    @property
+    def size(self) -> np.ndarray:
+        return np.ones_like(self.r)
 
 
 class End(Protocol):
@@ -155,7 +165,7 @@ class AtEnergy:
 
 @dataclass(frozen=True)
 class ToEnd:
-    """From the circle of radius 1 to an end, the angle about the Sun free or given.
+    """From the circle of radius 1, or another state, to an end, the angle about the Sun free or given.
 
     Unknowns (4): direction of (lam_r, lam_u, lam_v), flight time; with an angle (5): its costate, to which the length
     of these three is 1. Misses: those of the end, of the angle, and of the direction's length.
@@ -164,6 +174,7 @@ class ToEnd:
     sail: Sail
     end: End
     angle: float | None = None  # rad, swept
+    begin: PolarState = UNIT_CIRCLE
 
     free_departure = False
 
@@ -181,9 +192,10 @@ class ToEnd:
 
     def starts(self, unknowns: np.ndarray) -> np.ndarray:
         """(n, 12) from (n, 4 or 5)."""
+        r, u, v = self.begin
         lam_r, lam_u, lam_v = direction(unknowns)[0].T
         lam_angle = 0.0 if self.angle is None else unknowns[:, ANOMALY]
-        return cartesian(1.0, 0.0, 0.0, 1.0, lam_r, lam_angle + lam_u, lam_u, lam_v)
+        return cartesian(r, 0.0, u, v, lam_r, (lam_angle + lam_u * v - lam_v * u) / r, lam_u, lam_v)
 
     def misses(self, unknowns: np.ndarray, tolerance: float, smoothing: float = 0.0) -> np.ndarray:
         """(n, 4 or more) from (n, 4 or 5); NaN where a flight fails."""

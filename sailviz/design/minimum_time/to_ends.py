@@ -39,8 +39,7 @@ from sailviz.propulsion.solar_sail import Film
 
 Progress = Callable[[float, str], None]
 
-FIRST_RADIUS = 4.0  # to which flights that touch a limit are sought first, and carried out from there
-CARRIED = 4  # of the flights found, the fastest, that are carried on
+FALL, FALL_OF_WEAK, LONGEST_FALL = 12.0, 4.8, 30.0  # time to a limit: two revolutions; over the strength; at most
 FAR = 4.0  # radius beyond which a flight is no spiral any more
 EARLY = 1e-6  # relative, by which a flight may pass the radius aimed at before its end
 
@@ -104,7 +103,7 @@ def circle_to_end(
         flight = replace(flight, angle=keeping.angle)
         candidates = list(_turned(flight, candidates, effort))
     if keeping.perihelion and not effort.stopped:
-        touched, tried = _touching(flight, keeping.perihelion, effort)
+        touched, tried = _touching(flight, keeping.perihelion, _longest_fall(flight, device), effort)
         candidates += touched
         found.append(tried)
     kept = sorted((one for one in candidates if _keeps(flight, one, keeping)), key=lambda one: one.unknowns[SPAN])
@@ -216,6 +215,11 @@ def _flight_time(flight: ToEnd, device: Film | str) -> float:
     return float(np.hypot(spiral, np.pi + max(1.0, flight.end.scale)))
 
 
+def _longest_fall(flight: ToEnd, device: Film | str) -> float:
+    """The longest time after which a flight that is looked for touches its limit: weak sails go round more often."""
+    return float(np.clip(FALL_OF_WEAK / strength(flight.sail, device), FALL, LONGEST_FALL))
+
+
 def _kept(flight: ToEnd, keeping: Keeping, unknowns: np.ndarray) -> bool:
     """Whether an extremal of a search is a fastest flight rather than a slowest, and one to the end meant."""
     if not hamiltonians(flight.starts(unknowns[None]), flight.sail)[0] > 0:
@@ -269,23 +273,13 @@ def _turned(flight: ToEnd, free: list[Flown], effort: Effort) -> Iterator[Flown]
                 yield _flown(flight, Extremal(path.unknowns, miss))
 
 
-def _touching(flight: ToEnd, perihelion: float, effort: Effort) -> tuple[list[Flown], Search]:
-    """Flights that touch the limit, and what was tried: a far radius is come to from a nearer one."""
-    end = flight.end
-    far = isinstance(end, AtRadius) and end.radius > FIRST_RADIUS
-    near = replace(flight, end=AtRadius(FIRST_RADIUS)) if far else flight
-    problem, first = Touching(flight, perihelion), Touching(near, perihelion)
+def _touching(flight: ToEnd, perihelion: float, fall: float, effort: Effort) -> tuple[list[Flown], Search]:
+    """Flights that touch the limit, and what was tried."""
+    problem = Touching(flight, perihelion)
 
     def fastest(unknowns: np.ndarray) -> bool:
-        return bool(hamiltonians(near.starts(unknowns[None]), near.sail)[0] > 0 and unknowns[-1] < 0)
+        return bool(hamiltonians(flight.starts(unknowns[None]), flight.sail)[0] > 0)
 
-    span = np.pi + 2 * near.end.scale
-    tried = touching.search(first, span, SECOND.costates, fastest, effort, "flights past the Sun")
-    extremals = tried.extremals
-    if far:
-        carried = list[Extremal | None]()
-        with effort.stoppable():
-            for one in extremals[:CARRIED]:
-                carried.append(touching.carried_out(problem, one.unknowns, FIRST_RADIUS, effort))
-        extremals = distinct(one for one in carried if one is not None)
-    return [_flown(flight, one, problem) for one in extremals], tried
+    tried, free = touching.search(problem, fall, fastest, effort, "flights past the Sun")
+    touched = [_flown(flight, one, problem) for one in tried.extremals]
+    return touched + [_flown(flight, one) for one in distinct(free)], tried

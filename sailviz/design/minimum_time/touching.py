@@ -2,10 +2,12 @@
 
 The limit r >= r_min is a state constraint of second order: a flight meets it in a point, with u = 0. There the costate
 of the radius jumps, lam_r(t+) = lam_r(t-) + nu with nu < 0 (the limit only ever costs time); the other costates and H
-are continuous. No arc along the limit is looked for: a flight that would need one is not found.
+are continuous. No arc along the limit is looked for, nor a second touch: a flight that would need one is not found.
 
-Search: directions of the costates are flown roughly, each to where it turns near the limit; from there once more with
-jumps of several sizes; the best of them are finished by shooting. Units: mu = 1 and the distance of departure.
+Search: ways in to the limit and ways out from it are each a family, over the speed there; where a little more speed
+costs the one as much time as it saves the other, flight time is least, and the two make one flight, up to a jump. It is
+finished by shooting from the touching point to both sides. A weak sail's ways in are few and hard to meet: the flights
+of a stronger one are followed to it as well. Units: mu = 1 and the distance of departure.
 Re-derived; checked against direct transcription.
 """
 
@@ -13,39 +15,30 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any
 
 import numpy as np
 
 from sailviz.design.minimum_time import costates, shooting
-from sailviz.design.minimum_time.boundary_conditions import DIRECTION, SHORTEST, SPAN, direction, polar
-from sailviz.design.minimum_time.costates import fly_dense
+from sailviz.design.minimum_time.boundary_conditions import SHORTEST, SPAN, direction
 from sailviz.design.minimum_time.effort import Effort
-from sailviz.design.minimum_time.finishing import GOAL, LOOSE, TIGHT, Extremal, distinct
-from sailviz.design.minimum_time.planar_ends import AtRadius, Polar, ToEnd
-from sailviz.design.minimum_time.search import (
-    CHILDREN,
-    KEPT,
-    MOST_AT_ONCE,
-    Search,
-    in_threads,
-    screen,
-    sequence,
-    spread,
-    turned,
-)
-from sailviz.design.minimum_time.state_costate import Sail, X, Y
+from sailviz.design.minimum_time.finishing import GOAL, LOOSE, TIGHT, Extremal, distinct, polished
+from sailviz.design.minimum_time.from_touch import AFTER, BEFORE, JUMP, FromTouch
+from sailviz.design.minimum_time.planar_ends import Polar, ToEnd
+from sailviz.design.minimum_time.search import Search
+from sailviz.design.minimum_time.state_costate import OWN, Sail
 from sailviz.design.minimum_time.touches import Touch, jumped
+from sailviz.design.minimum_time.ways_in import WaysIn, curves
+from sailviz.design.minimum_time.ways_out import WaysOut, families
+from sailviz.steering.optimal import STRENGTH
 
 JUMPS = -np.geomspace(0.02, 3.0, 12)  # tried, where the length of the costates of r, u and v at departure is 1
-WIDE = 0.4  # of the logarithm of a perihelion over the limit, of flights worth a second look
-FALL = 12.0  # time within which a flight comes to the limit: two revolutions
 ROOM = 1e-7  # relative, by which a flight may pass below the limit: of rows beside the touching point
-ZOOMS = 2
-ROUGH = 1e-6  # integration tolerance of a first look
-NEAR = 1e-6  # largest miss of a flight that is on the way out
-STRIDE, SMALLEST_STRIDE = 0.25, 0.002  # of the logarithm of the radius, on the way out to a far one
+# strength and limit over those asked for, whose flights are sought; the last where the others led to nothing
+EASIER = ((1.0, 1.0), (1.4, 1.0), (1.0, 1.5))
+SLOWEST = 0.75  # of the parabolic speed at the limit: the circular one is 0.71
+STRIDE, LONGER, SMALLEST_STRIDE = 0.1, 1.5, 1e-3  # of the way from one sail to the other
+TOGETHER = 3  # of a stride, by which the unknowns may change in it, of 1
 
 Array = np.ndarray[Any, Any]
 
@@ -99,134 +92,94 @@ class Touching:
 
 
 def search(
-    problem: Touching, span: float, n: int, accept: Callable[[np.ndarray], bool], effort: Effort, words: str
-) -> Search:
-    """Extremals that touch the limit: n directions are looked at, over a span from the touching point on; what there
-    is, where the effort ends before. accept(unknowns (k + 2,)) -> bool refuses those that are not wanted; words : for
-    the progress."""
-    found, miss, candidates = list[Extremal | None](), np.empty(0), np.empty((0, problem.size))
+    problem: Touching, longest: float, accept: Callable[[np.ndarray], bool], effort: Effort, words: str
+) -> tuple[Search, list[Extremal]]:
+    """Extremals that touch the limit, at a time up to longest; and those of its ToEnd, which turn beyond the limit by
+    themselves, that were met where a jump would have the wrong sign. What there is, where the effort ends before.
+    accept(unknowns) -> bool refuses those that are not wanted; words : for the progress."""
+    found, free, starts = list[Extremal](), list[Extremal](), 0
 
-    def report(begin: float, share: float) -> None:
-        effort.report(begin + 0.5 * share, words)
-
+    own = FromTouch(problem.flight, problem.perihelion)
     with effort.stoppable():
-        miss, candidates = _candidates(problem, span, n, effort, partial(report, 0.0))
-        finish = partial(problem.finish, effort=effort)
-        found = in_threads(finish, list(candidates), partial(report, 0.5), effort)
-        effort.count("of them finished", len(candidates))
-    converged = [extremal for extremal in found if extremal is not None and accept(extremal.unknowns)]
-    best = float(miss[0]) if len(miss) else np.inf
-    nearest = candidates[0] if len(miss) else np.full(problem.size, np.nan)
-    return Search(distinct(converged), len(candidates), len(converged), best, nearest)
+        for i, (stronger, wider) in enumerate(EASIER):
+            if i == len(EASIER) - 1 and (found or free or wider * problem.perihelion >= 1.0):
+                break
+            effort.report(i / len(EASIER), words)
+            easier = _easier(own, stronger, wider)
+            for rough in _joined(easier, longest, effort):
+                starts += 1
+                x = easier.solved(rough, effort)
+                if x is not None and i:
+                    x = _followed(own, stronger, wider, x, effort)
+                if x is None:
+                    continue
+                if x[JUMP] < 0:
+                    exact = problem.polish(own.from_departure(x), effort)
+                else:
+                    alone = own.freed(x, effort)
+                    exact = None if alone is None else polished(problem.flight, alone, effort)
+                if exact is not None and accept(exact.unknowns):
+                    (found if x[JUMP] < 0 else free).append(exact)
+        effort.count("flights past the Sun finished", starts)
+    return Search(distinct(found), starts, len(found) + len(free), np.inf, np.empty(0)), free
 
 
-def carried_out(problem: Touching, unknowns: Array, nearer: float, effort: Effort) -> Extremal | None:
-    """The extremal of a problem that ends at a radius, from unknowns (k + 2,) that solve it for a nearer one: secants
-    in the logarithm of the radius, in steps that adapt; None where they come to nothing."""
-    end = problem.flight.end
-    assert isinstance(end, AtRadius), "energies have no way out"
-    from scipy.optimize import root
+def _easier(problem: FromTouch, stronger: float, wider: float) -> FromTouch:
+    """The same for a sail that is so many times as strong, and a limit that is so many times as wide."""
+    sail = problem.flight.sail
+    parameters = sail.parameters.copy()
+    parameters[OWN + STRENGTH] *= stronger
+    flight = replace(problem.flight, sail=Sail(sail.kind, parameters))
+    return FromTouch(flight, wider * problem.perihelion)
 
-    x, at, before = unknowns, float(np.log(nearer)), None
-    goal, stride = float(np.log(end.radius)), STRIDE
-    while at < goal:
-        effort.check()
-        following = min(goal, at + stride)
-        guess = x if before is None else x + (x - before[0]) * (following - at) / (at - before[1])
-        nearby = replace(problem, flight=replace(problem.flight, end=AtRadius(float(np.exp(following)))))
-        found = root(lambda y, nearby=nearby: nearby.misses(y[None], TIGHT)[0], guess, options={"maxfev": 150})
-        if not (np.abs(found.fun).max() < NEAR and found.x[SPAN] > x[SPAN]):
-            stride *= 0.4
+
+def _joined(problem: FromTouch, longest: float, effort: Effort) -> list[Array]:
+    """Rough unknowns (7,) of flights made of a way in and a way out of which the flight time is stationary, a minimum
+    over the speed at the limit; soonest at the limit first."""
+    flight, limit = problem.flight, problem.perihelion
+    inwards = curves(flight, limit, longest, effort)
+    if not inwards:
+        return []
+    slowest = SLOWEST * np.sqrt(2 / limit)
+    speeds = np.concatenate([np.minimum(way.speed[way.speed > slowest], 2 * slowest) for way in inwards])
+    if not len(speeds):
+        return []
+    outwards = families(flight, limit, float(speeds.min()), float(speeds.max()), effort)
+    pairs = [pair for way in inwards for out in outwards for pair in _met(limit, way, out)]
+    return sorted(pairs, key=lambda x: float(x[BEFORE]))
+
+
+def _met(limit: float, way: WaysIn, out: WaysOut) -> list[Array]:
+    """Rough unknowns (7,) of the flights that one curve of ways in and one family of ways out make."""
+    _, saved = out.at(way.speed)
+    slope = way.worth - saved  # of the flight time, over the speed at the limit
+    along = slope * np.gradient(way.speed)  # and along the curve
+    with np.errstate(invalid="ignore"):
+        least = np.nonzero((along[:-1] < 0) & (along[1:] >= 0))[0]
+    found = []
+    for i in least:
+        k = i if abs(slope[i]) < abs(slope[i + 1]) else i + 1
+        after = out.unknowns_at(way.speed[k])
+        before = way.costates[k]
+        scale = np.hypot(before[1], before[2]) / np.hypot(after[1], after[2])
+        found.append(np.array([way.speed[k], *before, scale * after[0] - before[0], way.time[k], after[SPAN]]))
+    return found
+
+
+def _followed(problem: FromTouch, stronger: float, wider: float, unknowns: Array, effort: Effort) -> Array | None:
+    """Unknowns (7,) of a flight from those of the easier one: secants in the logarithms, in steps that adapt; None
+    where they come to nothing."""
+    at, stride, x, before = 0.0, STRIDE, unknowns, None
+    while at < 1.0:
+        following = min(1.0, at + stride)
+        guess = x if before is None else x + (x - before[1]) * (following - at) / (at - before[0])
+        new = _easier(problem, stronger ** (1 - following), wider ** (1 - following)).solved(guess, effort, 12)
+        if new is None or np.abs(new - x)[:BEFORE].max() > TOGETHER * stride or new[AFTER] > 2 * x[AFTER]:
+            stride *= 0.5
             if stride < SMALLEST_STRIDE:
                 return None
             continue
-        before, x, at = (x, at), found.x, following
-        stride = min(1.4 * stride, STRIDE)
-    return problem.polish(x, effort)
-
-
-def _candidates(
-    problem: Touching, span: float, n: int, effort: Effort, progress: Callable[[float], None]
-) -> tuple[Array, Array]:
-    """(miss, unknowns) of the most promising flights, best first, no two alike."""
-    miss, unknowns = _screened(problem, spread(problem.flight, n, outwards=False), span, effort, progress)
-    width, q = 3.0 / np.sqrt(n), sequence(CHILDREN, 2)
-    for _ in range(ZOOMS):
-        if not len(miss):
-            break
-        best = unknowns[np.argsort(miss, kind="stable")[:KEPT]]
-        children = np.repeat(best, CHILDREN, axis=0)
-        angle, around = np.tile(width * np.sqrt(q[:, 0]), len(best)), np.tile(2 * np.pi * q[:, 1], len(best))
-        children[:, DIRECTION] = turned(children[:, DIRECTION], angle, around)
-        more, children = _screened(problem, children[:, : problem.flight.size], span, effort)
-        miss, unknowns = np.concatenate([miss, more]), np.concatenate([unknowns, children])
-        width *= 0.5
-    chosen: list[int] = []
-    for i in np.argsort(miss, kind="stable"):
-        apart = [np.abs(unknowns[i] - unknowns[j]) for j in chosen]
-        if all(np.linalg.norm(a[DIRECTION]) > 0.03 or a[-2] > 0.3 or a[-1] > 0.3 for a in apart):
-            chosen.append(int(i))
-            if len(chosen) == KEPT:
-                break
-    return miss[chosen], unknowns[chosen]
-
-
-def _screened(
-    problem: Touching, unknowns: Array, span: float, effort: Effort, progress: Callable[[float], None] | None = None
-) -> tuple[Array, Array]:
-    """Misses (m,), unknowns (m, k + 2) of flights that turn near the limit, each with the best of the jumps tried."""
-    sail, starts = problem.flight.sail, problem.flight.starts(unknowns)
-    parts = np.array_split(np.arange(len(unknowns)), max(1, -(-len(unknowns) // MOST_AT_ONCE)))
-
-    def part(places: Array) -> tuple[Array, Array]:
-        effort.check()
-        found = [_turns(starts[i : i + 1], problem.perihelion, sail) for i in places]
-        return _outwards(problem, unknowns[places], found, span)
-
-    found = in_threads(part, list(parts), progress, effort)
-    effort.count("costates flown roughly", len(unknowns))
-    miss, unknowns = (np.concatenate(column) for column in zip(*found, strict=True))
-    return miss, unknowns
-
-
-def _turns(start: Array, perihelion: float, sail: Sail) -> tuple[float, Array] | None:
-    """Time and state with costates (12,) at which a flight first comes as near to the Sun as the limit is, or turns
-    there; None of one that does not."""
-    times = np.linspace(0.0, FALL, 241)
-    rows = fly_dense(start, np.array([FALL]), sail, times, ROUGH, 0.0).rows[0]
-    r, _, u, _ = polar(rows)
-    turning = np.nonzero((u[:-1] < 0) & (u[1:] >= 0))[0]
-    for i in turning:
-        w = u[i] / (u[i] - u[i + 1])
-        off = np.log(r[i] / perihelion)
-        if abs(off) < WIDE:
-            time = times[i] + w * (times[1] - times[0])
-            return float(time), costates.fly_all(start, np.array([time]), sail, tolerance=ROUGH)[0]
-        if off < 0:
-            return None  # too near
-    return None
-
-
-def _outwards(
-    problem: Touching, unknowns: Array, turns: list[tuple[float, Array] | None], span: float
-) -> tuple[Array, Array]:
-    """Misses and unknowns of flights (k,) that turn, from there with each of the jumps."""
-    kept = [i for i, turn in enumerate(turns) if turn is not None]
-    size = problem.size
-    if not kept:
-        return np.empty(0), np.empty((0, size))
-    times = np.array([turn[0] for turn in turns if turn is not None])
-    states = np.stack([turn[1] for turn in turns if turn is not None])
-    off = np.log(np.linalg.norm(states[:, [X, Y]], axis=1) / problem.perihelion)
-    m = len(JUMPS)
-    begun = jumped(np.repeat(states, m, axis=0), np.tile(JUMPS, len(kept)))
-    sail = problem.flight.sail
-    miss, when = screen(begun, span, int(span / 0.1) + 2, sail, 0.0, ROUGH, problem.flight.nearness)
-    miss, when = miss.reshape(-1, m), when.reshape(-1, m)
-    best = np.argmin(miss, axis=1)
-    at = np.arange(len(kept))
-    found = np.empty((len(kept), size))
-    found[:, :-2] = unknowns[kept]
-    found[:, SPAN] = times + when[at, best]
-    found[:, -2], found[:, -1] = times, JUMPS[best]
-    return np.hypot(miss[at, best], off), found
+        before, at, x = (at, x), following, new
+        effort.count("steps of continuation")
+        stride = min(LONGER * stride, 2 * STRIDE)
+    return x

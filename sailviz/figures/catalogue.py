@@ -225,6 +225,15 @@ CATALOGUE = {
         "transfers",
         "throttle",
     ),
+    "photonic-assist": Entry(
+        "Past the Sun and out to 30 au: how light the sail, how near the Sun, how long the flight",
+        f"{OURS}; ideal sail from 1 au, in one plane; lightness: thrust over the Sun's pull; best found; "
+        "*: turns outside the limit by itself",
+        (13, 5.4),
+        (1, 2),
+        "transfers",
+        "photonic_assist",
+    ),
     "launch-window": Entry(
         "When to leave for a rendezvous: ideal sail of 1 mm/s², planets and asteroids where they are",
         f"{OURS}; mean elements, of asteroids JPL's; planets' pull left out; upper bounds; dotted: edge-on until later",

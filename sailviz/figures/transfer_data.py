@@ -2,10 +2,10 @@
 
     python -m sailviz.figures.transfer_data FOLDER
 
-computes them anew, transfer_times.csv and launch_windows.csv, and says how long: of the windows about five minutes on
-one core, of the flight times about fifteen. `python -m sailviz.figures.transfer_data FOLDER windows` does the windows
-alone, `... FOLDER times mercury electric-sail` the flight times to one target with one device, and leaves the others as
-they are.
+computes them anew, transfer_times.csv, launch_windows.csv and photonic_assist.csv, and says how long: of the windows
+about five minutes on one core, of the flight times about fifteen, of the assists about one. `python -m
+sailviz.figures.transfer_data FOLDER windows` does the windows alone, `... FOLDER assists` the assists, `... FOLDER
+times mercury electric-sail` the flight times to one target with one device, and leaves the others as they are.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ from time import perf_counter
 import numpy as np
 
 from sailviz import files, transfers
-from sailviz.constants import DAY
+from sailviz.constants import AU, DAY
 from sailviz.design.minimum_time import Rendezvous
+from sailviz.design.minimum_time.assists import assists
 from sailviz.shipped import shipped_folder
 
 TARGETS = ("mercury", "venus", "mars", "ceres")
@@ -37,7 +38,11 @@ WINDOWS = {
     "kamooalewa": ("2025-01-01", "2027-01-01", 49),
 }
 WINDOW_DEVICE, WINDOW_ACCELERATION = "ideal", 1.0  # mm/s2
-TIMES, WINDOW_FILE = "transfer_times.csv", "launch_windows.csv"
+ASSIST_LIGHTNESS = (0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.7)
+ASSIST_LIMITS = (0.2, 0.25, 0.3, 0.4, 0.5)  # au
+ASSIST_BASES = ((0.3, 0.3), (0.25, 0.4))  # lightness and limit of the flights that are sought
+ASSIST_RADIUS = 30.0  # au
+TIMES, WINDOW_FILE, ASSISTS = "transfer_times.csv", "launch_windows.csv", "photonic_assist.csv"
 
 
 def flight_times() -> dict[tuple[str, str], np.ndarray]:
@@ -59,6 +64,13 @@ def launch_windows() -> dict[str, tuple[np.ndarray, np.ndarray]]:
         key: (np.array([d for d, _ in rows]), np.array([t for _, t in rows], dtype=float))
         for key, rows in found.items()
     }
+
+
+def photonic_assists() -> np.ndarray:
+    """(n, 5): lightness, perihelion limit au, flight time d to ASSIST_RADIUS, closest au, revolutions; the last three
+    NaN where no flight was found."""
+    names = ("lightness", "limit_au", "time_d", "closest_au", "revolutions")
+    return np.array([[float(row[name]) for name in names] for row in _rows(ASSISTS)])
 
 
 def _rows(name: str) -> Iterator[dict[str, str]]:
@@ -118,6 +130,20 @@ def compute_windows(path: Path) -> None:
                 file.write(f"{target},{departures[i]},{times[i]:.4f}\n")
 
 
+def compute_assists(path: Path) -> None:
+    """Search and follow every assist anew."""
+    begun = perf_counter()
+    bases = np.array(ASSIST_BASES) * [1.0, AU]
+    found = assists(AU, ASSIST_RADIUS * AU, "ideal", ASSIST_LIGHTNESS, np.array(ASSIST_LIMITS) * AU, bases)
+    with files.writing(path, "table") as part, open(part, "w", newline="", encoding="utf-8") as file:
+        file.write("lightness,limit_au,time_d,closest_au,revolutions\n")
+        for i, lightness in enumerate(ASSIST_LIGHTNESS):
+            for k, limit in enumerate(ASSIST_LIMITS):
+                days, near, turns = found.time[i, k] / DAY, found.closest[i, k] / AU, found.revolutions[i, k]
+                file.write(f"{lightness:g},{limit:g},{days:.4f},{near:.5f},{turns:.4f}\n")
+    _say("assists", begun)
+
+
 def _say(what: str, begun: float) -> None:
     """How long a search took, beside the tables."""
     print(f"{what}: {perf_counter() - begun:.1f} s", file=sys.stderr, flush=True)
@@ -126,8 +152,10 @@ def _say(what: str, begun: float) -> None:
 if __name__ == "__main__":
     folder, only = Path(sys.argv[1]), sys.argv[2:]
     at_first = perf_counter()
-    if only != ["windows"]:
+    if only[:1] in ([], ["times"]):
         compute_times(folder / TIMES, *only[1:])
-    if only[:1] != ["times"]:
+    if only in ([], ["windows"]):
         compute_windows(folder / WINDOW_FILE)
+    if only in ([], ["assists"]):
+        compute_assists(folder / ASSISTS)
     _say("all of them", at_first)

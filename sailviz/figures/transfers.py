@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.dates import DateFormatter, MonthLocator
 
-from sailviz.constants import AU, DAY
+from sailviz.constants import AU, DAY, YEAR
 from sailviz.figures import transfer_data
 from sailviz.figures.transfer_data import COMPARED, OVER_ACCELERATION, TARGETS
 from sailviz.propulsion.solar_sail import FILMS
@@ -142,6 +142,33 @@ def throttle(pen: Pen, path: Axes, share: Axes) -> None:
     path.set_title("seen from the north of the ecliptic")
     share.set(xlabel="time [d]", ylabel="share of the full thrust", xlim=(0, days[-1]), ylim=(-0.03, 1.12))
     share.set_title("throttle")
+
+
+def photonic_assist(pen: Pen, cells: Axes, curves: Axes) -> None:
+    """Flight time out to a distance over lightness and perihelion limit, as a map and as curves, one per limit."""
+    found = transfer_data.photonic_assists()
+    betas, limits = np.unique(found[:, 0]), np.unique(found[:, 1])
+    years = found[:, 2].reshape(len(betas), len(limits)).T * DAY / YEAR
+    free = (found[:, 3] > 1.001 * found[:, 1]).reshape(len(betas), len(limits)).T
+    edges = np.arange(len(betas) + 1), np.arange(len(limits) + 1)
+    image = cells.pcolormesh(*edges, np.ma.masked_invalid(years), cmap=pen.ramp)
+    pen.bar(cells, image, "years")
+    for k, i in np.argwhere(np.isfinite(years)):
+        words = f"{years[k, i]:.2f}" + ("*" if free[k, i] else "")
+        pen.label(cells, i + 0.5, k + 0.5, words, fontsize=8.5)
+    cells.set_xticks(np.arange(len(betas)) + 0.5, [f"{beta:g}" for beta in betas])
+    cells.set_yticks(np.arange(len(limits)) + 0.5, [f"{limit:g}" for limit in limits])
+    cells.grid(visible=False)
+    cells.set(xlabel="lightness", ylabel="perihelion limit [au]")
+    cells.set_title("years to 30 au; blank: not found by this search")
+    for limit, row, color in zip(limits, years, pen.style.series, strict=False):
+        curves.plot(betas, row, color=color, marker="o", markersize=4, label=f"{limit:g} au")
+    curves.set(xlabel="lightness", ylabel="years to 30 au", yscale="log")
+    ticks = [tick for tick in (2, 3, 4, 5, 6, 8, 10) if curves.get_ylim()[0] < tick < curves.get_ylim()[1]]
+    curves.set_yticks(ticks, [f"{tick}" for tick in ticks])
+    curves.set_yticks([], minor=True)
+    curves.legend(loc="upper right", title="limit")
+    curves.set_title("what a nearer pass saves")
 
 
 def launch_window(pen: Pen, *panels: Axes) -> None:

@@ -32,7 +32,7 @@ from sailviz.design.minimum_time.planar_transfer import (
     time_unit,
 )
 from sailviz.design.minimum_time.search import Search, search, spiral_time
-from sailviz.design.minimum_time.state_costate import COSTATES, LRX, LVX, LVY
+from sailviz.design.minimum_time.state_costate import COSTATES, LRX, LVX, LVY, POSITION
 from sailviz.design.minimum_time.touches import Touch
 from sailviz.design.minimum_time.touching import ROOM, Touching
 from sailviz.propulsion.solar_sail import Film
@@ -41,6 +41,7 @@ Progress = Callable[[float, str], None]
 
 FALL, FALL_OF_WEAK, LONGEST_FALL = 12.0, 4.8, 30.0  # time to a limit: two revolutions; over the strength; at most
 FAR = 4.0  # radius beyond which a flight is no spiral any more
+BESIDE = 101  # moments about the one nearest to the Sun, at which a flight is looked at once more
 EARLY = 1e-6  # relative, by which a flight may pass the radius aimed at before its end
 
 
@@ -98,15 +99,15 @@ def circle_to_end(
         found.append(tried)
         if tried.extremals or keeping.perihelion or effort.stopped:
             break
-    candidates = [_flown(flight, extremal) for extremal in found[-1].extremals]
+    candidates = [flown(flight, extremal) for extremal in found[-1].extremals]
     if keeping.angle is not None:
         flight = replace(flight, angle=keeping.angle)
         candidates = list(_turned(flight, candidates, effort))
     if keeping.perihelion and not effort.stopped:
-        touched, tried = _touching(flight, keeping.perihelion, _longest_fall(flight, device), effort)
+        touched, tried = _touching(flight, keeping.perihelion, longest_fall(flight, device), effort)
         candidates += touched
         found.append(tried)
-    kept = sorted((one for one in candidates if _keeps(flight, one, keeping)), key=lambda one: one.unknowns[SPAN])
+    kept = sorted((one for one in candidates if keeps(flight, one, keeping)), key=lambda one: one.unknowns[SPAN])
     starts, converged = sum(one.starts for one in found), sum(one.converged for one in found)
     if not kept:
         days = LAST.spans * guess * time_unit(initial_radius) / DAY
@@ -190,8 +191,8 @@ def flight_near(
         tried = _touching_near(Touching(flight, keeping.perihelion), guess, touching_at, effort)
     for extremal, problem in tried:
         if hamiltonians(flight.starts(extremal.unknowns[None, : flight.size]), sail)[0] > 0:
-            one = _flown(flight, extremal, problem)
-            if _keeps(flight, one, keeping):
+            one = flown(flight, extremal, problem)
+            if keeps(flight, one, keeping):
                 return _transfer(
                     one, device, characteristic_acceleration, initial_radius, keeping, counts, effort.found()
                 )
@@ -215,7 +216,7 @@ def _flight_time(flight: ToEnd, device: Film | str) -> float:
     return float(np.hypot(spiral, np.pi + max(1.0, flight.end.scale)))
 
 
-def _longest_fall(flight: ToEnd, device: Film | str) -> float:
+def longest_fall(flight: ToEnd, device: Film | str) -> float:
     """The longest time after which a flight that is looked for touches its limit: weak sails go round more often."""
     return float(np.clip(FALL_OF_WEAK / strength(flight.sail, device), FALL, LONGEST_FALL))
 
@@ -224,10 +225,10 @@ def _kept(flight: ToEnd, keeping: Keeping, unknowns: np.ndarray) -> bool:
     """Whether an extremal of a search is a fastest flight rather than a slowest, and one to the end meant."""
     if not hamiltonians(flight.starts(unknowns[None]), flight.sail)[0] > 0:
         return False
-    return _keeps(flight, _flown(flight, Extremal(unknowns, 0.0)), keeping)
+    return keeps(flight, flown(flight, Extremal(unknowns, 0.0)), keeping)
 
 
-def _flown(flight: ToEnd, extremal: Extremal, touched: Touching | None = None) -> Flown:
+def flown(flight: ToEnd, extremal: Extremal, touched: Touching | None = None) -> Flown:
     unknowns, sail = extremal.unknowns[: flight.size], flight.sail
     start = flight.starts(unknowns[None])
     h = float(hamiltonians(start, sail)[0])
@@ -237,13 +238,18 @@ def _flown(flight: ToEnd, extremal: Extremal, touched: Touching | None = None) -
         there = touched.touch(extremal.unknowns)
         jumps = (Touch(there.time, there.jump / h),)
     span = extremal.time
-    path = touches.propagate(start[0], span, sail, jumps, np.linspace(0.0, span, int(40 * span) + 200))
+    times = np.linspace(0.0, span, int(40 * span) + 200)
+    path = touches.propagate(start[0], span, sail, jumps, times)
     r, azimuth, _, _ = polar(path.rows)
-    angle = np.unwrap(azimuth)
-    return Flown(unknowns, start[0], jumps, path, float(angle[-1] - angle[0]), float(r.min()), extremal.miss)
+    angle, least = np.unwrap(azimuth), int(np.argmin(r))
+    beside = np.linspace(times[max(least - 1, 0)], times[min(least + 1, len(times) - 1)], BESIDE)
+    at_touches = [one.time for one in jumps]
+    near = touches.propagate(start[0], span, sail, jumps, np.union1d(beside, at_touches))
+    closest = float(np.linalg.norm(near.rows[:, POSITION], axis=1).min())
+    return Flown(unknowns, start[0], jumps, path, float(angle[-1] - angle[0]), closest, extremal.miss)
 
 
-def _keeps(flight: ToEnd, one: Flown, keeping: Keeping) -> bool:
+def keeps(flight: ToEnd, one: Flown, keeping: Keeping) -> bool:
     """Whether a flight comes to its end for the first time there, out of the Sun, within its limits."""
     r, _, _, _ = polar(one.path.rows)
     end = flight.end
@@ -270,7 +276,7 @@ def _turned(flight: ToEnd, free: list[Flown], effort: Effort) -> Iterator[Flown]
         if path.complete:
             miss = float(np.abs(flight.misses(path.unknowns[None], 1e-13)).max())
             if hamiltonians(flight.starts(path.unknowns[None]), flight.sail)[0] > 0:
-                yield _flown(flight, Extremal(path.unknowns, miss))
+                yield flown(flight, Extremal(path.unknowns, miss))
 
 
 def _touching(flight: ToEnd, perihelion: float, fall: float, effort: Effort) -> tuple[list[Flown], Search]:
@@ -281,5 +287,5 @@ def _touching(flight: ToEnd, perihelion: float, fall: float, effort: Effort) -> 
         return bool(hamiltonians(flight.starts(unknowns[None]), flight.sail)[0] > 0)
 
     tried, free = touching.search(problem, fall, fastest, effort, "flights past the Sun")
-    touched = [_flown(flight, one, problem) for one in tried.extremals]
-    return touched + [_flown(flight, one) for one in distinct(free)], tried
+    touched = [flown(flight, one, problem) for one in tried.extremals]
+    return touched + [flown(flight, one) for one in distinct(free)], tried

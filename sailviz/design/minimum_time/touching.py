@@ -106,11 +106,11 @@ def search(
                 break
             effort.report(i / len(EASIER), words)
             easier = _easier(own, stronger, wider)
-            for rough in _joined(easier, longest, effort):
+            for rough in joined(easier, longest, effort):
                 starts += 1
                 x = easier.solved(rough, effort)
                 if x is not None and i:
-                    x = _followed(own, stronger, wider, x, effort)
+                    x = followed(own, stronger, wider, x, effort)
                 if x is None:
                     continue
                 if x[JUMP] < 0:
@@ -133,7 +133,7 @@ def _easier(problem: FromTouch, stronger: float, wider: float) -> FromTouch:
     return FromTouch(flight, wider * problem.perihelion)
 
 
-def _joined(problem: FromTouch, longest: float, effort: Effort) -> list[Array]:
+def joined(problem: FromTouch, longest: float, effort: Effort) -> list[Array]:
     """Rough unknowns (7,) of flights made of a way in and a way out of which the flight time is stationary, a minimum
     over the speed at the limit; soonest at the limit first."""
     flight, limit = problem.flight, problem.perihelion
@@ -166,7 +166,7 @@ def _met(limit: float, way: WaysIn, out: WaysOut) -> list[Array]:
     return found
 
 
-def _followed(problem: FromTouch, stronger: float, wider: float, unknowns: Array, effort: Effort) -> Array | None:
+def followed(problem: FromTouch, stronger: float, wider: float, unknowns: Array, effort: Effort) -> Array | None:
     """Unknowns (7,) of a flight from those of the easier one: secants in the logarithms, in steps that adapt; None
     where they come to nothing."""
     at, stride, x, before = 0.0, STRIDE, unknowns, None

@@ -19,6 +19,7 @@ from sailviz.design.minimum_time.arc_structures import (
     LENGTHS,
     SOLVED,
     Check,
+    Fault,
     Structure,
     amended,
     faults,
@@ -30,6 +31,7 @@ from sailviz.design.minimum_time.boundary_conditions import DIRECTION, ToCircle
 
 FIRST, LARGEST, SMALLEST = 0.03, 0.15, 3e-5  # steps: direction of the costates, shares of the time, logarithm of radius
 NEAR = 0.02  # steps below which an arc that is born may lead back
+LEAPS = (0.003, 0.01, 0.03)  # logarithm of the radius, past a place where an arc is almost without length
 SIDEWAYS = 0.7  # of a step: farther off it the correction led elsewhere
 BENT = 0.5  # cosine between two tangents that follow each other
 MOST = 400  # circles
@@ -122,6 +124,19 @@ def _changed(flight: ToCircle, now: Point, beyond: Point, step: float, check: Ch
     return None
 
 
+def _leapt(flight: ToCircle, now: Point, check: Check) -> Point | None:
+    """Where a path goes on without its shortest arc, past the place where that has so little length that neither row
+    of arcs passes its tests."""
+    short = int(np.argmin(now.structure.lengths))
+    way = float(np.sign(now.tangent[-1]))
+    for other in amended(now.structure, [Fault("length", short)]):
+        for leap in LEAPS:
+            found = right(_to(flight, now.at + way * leap), other, check, depth=1)
+            if found is not None and found.arcs != now.structure.arcs and _near(found, now.structure):
+                return _point(flight, found, now.at + way * leap, way)
+    return None
+
+
 def _near(one: Structure, other: Structure) -> bool:
     """Whether two flights that differ in their arcs may be of one path."""
     times = np.sum(one.lengths) / np.sum(other.lengths)
@@ -144,9 +159,10 @@ def _points(flight: ToCircle, first: Point, check: Check) -> Iterator[Point]:
             if new is not None and faults(_to(flight, new.at), new.structure):
                 new = _changed(flight, now, new, step, check)
             step = step if new is not None else 0.5 * step
+        new = new or _leapt(flight, now, check)
         if new is None:
             return
-        now, step = new, min(1.5 * step, LARGEST)
+        now, step = new, min(max(1.5 * step, 0.1 * FIRST), LARGEST)
         yield now
 
 

@@ -635,6 +635,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "competition": competition,
     "quaternions": quaternions,
     "billowed": billowed,
+    "ageing billow": scene("body/ageing-billow", propagation__outputs=41),
     "turning": turning,
     "turning file": turning_file,
     "turning low": turning_low,

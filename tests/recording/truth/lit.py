@@ -8,7 +8,7 @@ import numpy as np
 
 from .measure import same_direction, same_place
 from .now import told
-from .outlines import BLACK, FILM, outline, same_surface
+from .outlines import BLACK, film_of, outline, same_surface
 from .picture import turn
 from .seen import arrows, body, seen, texts
 
@@ -21,8 +21,8 @@ CLOSE = 9.5  # size of a sail in the close-up
 
 def facets(f, entity):
     """Each facet lies on the shape that the scene tells, in the colour of p = c ((b1 + b2) c + b3) over the strongest,
-    by the side that is lit, dark where a body is turned away and where the line to the light meets the box of the bus;
-    at moments from the first row to the last, between which the light does not move far over it."""
+    by the side that is lit and as the film has aged, dark where a body is turned away and where the line to the light
+    meets the box of the bus; at moments from the first row to the last, between which the light does not move far."""
     own, side = outline(f), float(f.truth.scene["craft_side_m"])
     assert abs(side - own.length) < 1e-9 * side
     points = np.asarray(f.picture.fixed(entity, "Mesh3D:vertex_positions"), float).reshape(-1, 3, 3) * side
@@ -46,7 +46,7 @@ def facets(f, entity):
     for row in steps:
         u = light[row]
         c = -(normal @ u)
-        b = np.where(on_bus[:, None], BLACK, np.where(c[:, None] > 0, FILM, own.back))
+        b = np.where(on_bus[:, None], BLACK, np.where(c[:, None] > 0, film_of(f, row), own.back))
         p = np.where((c > 0) | ~on_bus, np.abs(c) * ((b[:, 0] + b[:, 1]) * np.abs(c) + b[:, 2]), 0.0)
         shaded = edge = np.zeros(len(points), bool)
         if own.middle is not None and own.shadow:

@@ -10,12 +10,14 @@ import numpy as np
 FILM, BLACK = (0.0723, 0.8554, -0.0030), (0.5, 0.0, 0.0)  # b1, b2, b3 of jpl-2015, and of a bus
 # (3.20) of jpl-2015 with the roles of front and back swapped and nothing mirrored
 BLACK_BACK = (0.5, 0.0, 0.5 * (0.27 * 0.67 - 0.025 * 0.79) / (0.27 + 0.025))
+YEAR = 365.25 * 86400.0  # s
 NEAR = 2e-6  # of the size: what is drawn is float32
 
 
 @dataclass(frozen=True)
 class Outline:
-    """A film z = height(|x|, |y|) over |x| <= half[0], |y| <= half[1] about a place, m; beside it a box, or none."""
+    """A film z = height(|x|, |y|) over |x| <= half[0], |y| <= half[1] about a place, m, or over the disc in it; beside
+    it a box, or none."""
 
     height: Callable
     half: np.ndarray
@@ -24,11 +26,13 @@ class Outline:
     size: np.ndarray | None
     back: tuple[float, float, float]
     shadow: bool
+    disc: bool = False
 
     @property
     def box(self):
         """Its lowest and highest corner (3,)."""
-        top = self.about[2] + self.height(*self.half) if self.half.any() else 0.0
+        corner = (0.0, 0.0) if self.disc else self.half
+        top = self.about[2] + self.height(*corner) if self.half.any() else 0.0
         deep = self.about[2] + self.height(self.half[0], 0.0)
         low = np.array([*(self.about[:2] - self.half), min(self.about[2], top, deep)])
         high = np.array([*(self.about[:2] + self.half), max(self.about[2], top, deep)])
@@ -54,6 +58,8 @@ class Outline:
         x, y, z = np.abs(np.asarray(points)[:, 0] - self.about[0]), np.abs(points[:, 1] - self.about[1]), points[:, 2]
         near = NEAR * self.length
         inside = (x < self.half[0] + near) & (y < self.half[1] + near)
+        if self.disc:
+            inside = np.hypot(x, y) < self.half[0] + near
         return inside & (np.abs(z - self.about[2] - self.height(x, y)) < near)
 
 
@@ -79,6 +85,12 @@ def outline(f) -> Outline | None:
 
         def height(x, y):
             return np.sqrt(2) * np.tan(told["cone"]) * np.maximum(x, y)
+    elif told["kind"] == "cap":  # of a sphere, through the rim of its mouth at z = 0
+        half, slope = np.full(2, told["diameter"] / 2), told["edge_slope"]
+
+        def height(x, y):
+            ball = half[0] / np.sin(slope)
+            return np.sqrt(np.maximum(ball**2 - x**2 - y**2, 0.0)) - ball * np.cos(slope)
     else:
         assert told["kind"] == "file"
         # `flights.lopsided` in mm, its front +x laid along -z, so that the next axis, y, becomes x and z becomes -y
@@ -89,7 +101,22 @@ def outline(f) -> Outline | None:
         def height(x, y):
             return 0 * x * y
 
-    return Outline(height, half, about, middle, size, back, bool(told["shadow"]))
+    return Outline(height, half, about, middle, size, back, bool(told["shadow"]), told["kind"] == "cap")
+
+
+def film_of(f, row) -> tuple[float, float, float]:
+    """b1, b2, b3 of the lit side at a row: of jpl-2015, or of what its dose has made of it."""
+    told = f.truth.resolved["device"].get("ageing")
+    if not told:
+        return FILM
+    gone = 1 - 0.5 ** (f.truth.film["dose_yr"][row] / (told["half_dose"] / YEAR))
+    r, front, back = (
+        0.91 * (1 - told["factor"] * gone / (1 + told["factor"])),
+        0.025 * (1 + told["factor"] * gone),
+        0.27,
+    )
+    heat = (1 - r) * (front * 0.79 - back * 0.67) / (front + back)
+    return (1 - 0.94 * r) / 2, 0.94 * r, (0.79 * r * (1 - 0.94) + heat) / 2  # (3.18)-(3.20)
 
 
 def same_surface(own: Outline, points, film: bool) -> None:

@@ -174,8 +174,8 @@ def test_what_cannot_be_is_refused_in_one_sentence(flat, options, words):
 def test_a_table_is_made_once_and_again_where_it_was_damaged(monkeypatch):
     shape = Shape((membranes.square(3.0, Surface(B, B), 0.1, rows=3),))
     made = []
-    build = kept_tables.light_table.build
-    monkeypatch.setattr(kept_tables.light_table, "build", lambda *a, **more: made.append(1) or build(*a, **more))
+    build = kept_tables.light_table.build_all
+    monkeypatch.setattr(kept_tables.light_table, "build_all", lambda *a, **more: made.extend(a[0]) or build(*a, **more))
     first = kept_tables.table_of(shape, 4, shadow=False)
     again = kept_tables.table_of(shape, 4, shadow=False)
     assert len(made) == 1

@@ -149,7 +149,8 @@ class Curves:
     def finish(self, last: Run, asked: tuple[str, ...], about: tuple[str, ...]) -> list[PlotView]:
         """Write the curves -> views of those that vary, most telling first; last : the last row of the run.
 
-        asked : words of the plots that the scene wants in front; about : words of what it speaks of.
+        asked : words of the plots that the scene wants in front, of those that one word calls the largest first;
+        about : words of what it speaks of.
         """
         rows = self.close(last)
         found: list[tuple[float, PlotView]] = []
@@ -161,7 +162,8 @@ class Curves:
         for plot in self.plots:
             values = self.values_of(plot)
             place = wanted_place(plot, asked)
-            if place is not None and largest(values) < ROUNDING * most[place]:
+            share = largest(values) / most[place] if place is not None and most[place] else 1.0
+            if share < ROUNDING:
                 continue
             if plot.handy:
                 plot, values = self._in_handy_unit(plot, values)
@@ -169,7 +171,7 @@ class Curves:
             if place is None and (worth < SHOWN_FROM or hidden(plot, about)):
                 continue
             view = self._write(plot, rows, values)
-            found.append((worth if place is None else 1e3 - place, view))
+            found.append((worth if place is None else 1e3 - place + 0.5 * share, view))
         return [view for _, view in sorted(found, key=lambda pair: -pair[0])]
 
     def close(self, last: Run) -> Rows:

@@ -142,7 +142,9 @@ def rendezvous(
         found = meeting.fresh(0.0, planar)
     effort.report(0.9, "departures")
     if not found:
-        return _nothing(asked, first, f"no flight found for {first}")
+        return _nothing(
+            asked, first, f"no flight found for {first.astype('datetime64[s]')}", _without_success(effort, planar)
+        )
     return _result(asked, found[0], len(found))
 
 
@@ -246,17 +248,24 @@ def _best_of_window(asked: Asked, planar: PlanarGuess | None, length: float, dat
         known = launch_dates.distinct(bests)
         deeper = [x for x in _valleys(curve) if not any(_leads_to(x, best, length / dates) for best in known)]
         list(pool.map(followed, deeper))
-    return _of_window(asked, launch_dates.distinct(bests), flights, times, curve)
+    return _of_window(asked, launch_dates.distinct(bests), flights, times, curve, planar)
 
 
 def _of_window(
-    asked: Asked, bests: list[LocalBest], flights: list[Unknowns], times: np.ndarray, curve: Curve
+    asked: Asked,
+    bests: list[LocalBest],
+    flights: list[Unknowns],
+    times: np.ndarray,
+    curve: Curve,
+    planar: PlanarGuess | None,
 ) -> Rendezvous:
     first = asked.meeting.epoch
     best = fastest([*(x.flight for x in bests), *flights])
     if best is None:
-        last = first + np.timedelta64(round(times[-1]), "s")
-        return _nothing(asked, first, f"no flight found that leaves between {first} and {last}")
+        begin = first.astype("datetime64[s]")
+        last = begin + np.timedelta64(round(times[-1]), "s")
+        ending = _without_success(asked.meeting.effort, planar)
+        return _nothing(asked, first, f"no flight found that leaves between {begin} and {last}", ending)
     spans = np.array([np.nan if x is None else x.span for x in curve])
     edge = next((("first", "last")[int(x.slope < 0)] for x in bests if x.flight is best and x.at_edge), "")
     window = Window(
@@ -354,17 +363,24 @@ def _result(asked: Asked, unknowns: Unknowns, local: int, window: Window | None 
 
 def _nothing(asked: Asked, first: np.datetime64, reason: str, ending: Ending | None = None) -> Rendezvous:
     """The result where there is no flight; ending : of a search before, by default of this one."""
+    ending = ending or _without_success(asked.meeting.effort)
+    if ending.nearest and ending.nearest not in reason:
+        reason = f"{reason}; {ending.nearest}"
     (state,) = asked.meeting.state(asked.meeting.origin, 0.0)
     return Rendezvous(
         np.nan, first, np.datetime64("NaT"), np.nan, np.full(6, np.nan), np.nan, np.nan, np.nan, 0, reason,
         False, reason, state[POSITION] * AU, state[VELOCITY] * SPEED_UNIT, asked.device,
-        asked.characteristic_acceleration, ending=ending or _without_success(asked.meeting.effort),
+        asked.characteristic_acceleration, ending=ending,
     )  # fmt: skip
 
 
-def _without_success(effort: Effort) -> Ending:
-    """How a search ended that found no flight."""
+def _without_success(effort: Effort, planar: PlanarGuess | None = None) -> Ending:
+    """How a search ended that found no flight. planar : one that there is between circles."""
     advice = ["take a higher characteristic acceleration", "leave on another date, or on the best of a window"]
     if effort.stopped:
         advice.append(f"give the search more time than the {effort.seconds:.3g} s it had")
-    return effort.not_found("", *advice)
+    nearest = ""
+    if planar is not None:
+        days = planar.span * TIME_UNIT / DAY
+        nearest = f"between circles of the two mean distances, with the bodies anywhere on them, it takes {days:.4f} d"
+    return effort.not_found(nearest, *advice)

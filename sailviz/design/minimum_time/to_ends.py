@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sailviz.constants import DAY
+from sailviz.constants import AU, DAY
 from sailviz.design.minimum_time import shooting, touches, touching
 from sailviz.design.minimum_time.boundary_conditions import SPAN, hamiltonians, polar
 from sailviz.design.minimum_time.circles import LAST, MORE_THRUST, SECOND
@@ -99,7 +99,8 @@ def circle_to_end(
         found.append(tried)
         if tried.extremals or keeping.perihelion or effort.stopped:
             break
-    candidates = [flown(flight, extremal) for extremal in found[-1].extremals]
+    free = flight
+    candidates = without_limits = [flown(flight, extremal) for extremal in found[-1].extremals]
     if keeping.angle is not None:
         flight = replace(flight, angle=keeping.angle)
         candidates = list(_turned(flight, candidates, effort))
@@ -112,12 +113,47 @@ def circle_to_end(
     if not kept:
         days = LAST.spans * guess * time_unit(initial_radius) / DAY
         reason = f"no flight was found within {days:.0f} d, from {starts} starts, of which {converged} converged"
-        ending = effort.not_found("", MORE_THRUST)
+        nearest = _not_within(keeping, without_limits, initial_radius) or _nearest_screened(free, found, initial_radius)
+        advice = ["ask for less: a limit nearer to the Sun, or any angle"] if without_limits else []
+        reason += f"; {nearest}" if nearest else ""
+        ending = effort.not_found(nearest, MORE_THRUST, *advice)
         return no_transfer(device, characteristic_acceleration, initial_radius, reason, ending)
     times = np.array([one.unknowns[SPAN] for one in kept]) * time_unit(initial_radius)
     method = "touching the limit" if kept[0].touches else "screening"
     counts = Counts(starts, converged, times, method)
     return _transfer(kept[0], device, characteristic_acceleration, initial_radius, keeping, counts, effort.found())
+
+
+def _not_within(keeping: Keeping, reached: list[Flown], initial_radius: float) -> str:
+    """In words, of true flights to the end that do not keep to what was asked the one that comes nearest to it."""
+    if not reached:
+        return ""
+    if keeping.angle is not None:
+        asked = keeping.angle
+        one = min(reached, key=lambda each: abs(each.swept - asked))
+        broken = f"goes round {one.swept / TURN:.4f} times"
+    else:
+        one = max(reached, key=lambda each: each.closest)
+        broken = f"passes the Sun at {one.closest * initial_radius / AU:.4f} au"
+    days = one.unknowns[SPAN] * time_unit(initial_radius) / DAY
+    return f"a flight to that end {broken}, and takes {days:.4f} d"
+
+
+def _nearest_screened(flight: ToEnd, found: list[Search], initial_radius: float) -> str:
+    """In words, where the true flight that came nearest of all those flown roughly is then, flown accurately."""
+    best = min((one for one in found if len(one.nearest)), key=lambda one: one.nearest_miss, default=None)
+    if best is None:
+        return ""
+    span = float(best.nearest[SPAN])
+    start = flight.starts(best.nearest[None, : flight.size])[0]
+    end = touches.propagate(start, span, flight.sail, (), np.array([0.0, span])).end
+    r, _, u, v = (float(one[0]) for one in polar(end[None]))
+    unit = time_unit(initial_radius)
+    away, across = (speed * initial_radius / unit / 1e3 for speed in (u, v))
+    return (
+        f"the nearest flight is {r * initial_radius / AU:.4f} au from the Sun after {span * unit / DAY:.4f} d, at "
+        f"{away:.4f} km/s away from it and {across:.4f} km/s across"
+    )
 
 
 class Counts(NamedTuple):

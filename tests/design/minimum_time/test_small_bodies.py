@@ -7,6 +7,7 @@ sail, 1 mm/s2, departure with the Earth's velocity.
 from __future__ import annotations
 
 import os
+import re
 
 import numpy as np
 import pytest
@@ -235,3 +236,14 @@ def test_units():
     """What the reference calls 1 mm/s2 in units of the Sun's pull at one au, and one au per unit of time."""
     assert pytest.approx(58.132440872 * DAY, rel=1e-9) == TIME_UNIT
     assert pytest.approx(29784.6918, rel=1e-8) == SPEED_UNIT
+
+
+@pytest.mark.parametrize("dates", ["2031-03-01", ("2031-03-01", "2031-04-01")], ids=["date", "window"])
+def test_where_none_is_found_the_flight_between_circles_is_told(monkeypatch, dates):
+    """407.70 d between circles of 1 and 1.5237 au; the orbits of that day are a little larger."""
+    monkeypatch.setattr(Meeting, "fresh", lambda *_: [])
+    found = rendezvous("Mars", dates)
+    assert not found.feasible
+    assert "2031-03-01T00:00:00" in re.split("[ ;]", found.reason)
+    (days,) = re.findall(r"it takes (\S+) d", found.ending.nearest)
+    assert float(days) == pytest.approx(407.70, abs=0.1)

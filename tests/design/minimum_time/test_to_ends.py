@@ -4,16 +4,21 @@ transcription confirmed, from nothing but the question; each flown again by SciP
 from __future__ import annotations
 
 import os
+import re
+from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from sailviz.constants import AU, DAY, GRAVITY_AT_1_AU
-from sailviz.design.minimum_time import Keeping, circle_to_end
+from sailviz.design.minimum_time import Keeping, circle_to_end, to_ends
+from sailviz.design.minimum_time.boundary_conditions import SPAN
 from sailviz.design.minimum_time.planar_ends import AtEnergy, AtRadius, AtState
 from sailviz.design.minimum_time.planar_transfer import time_unit
+from sailviz.design.minimum_time.search import Search, search
 
 EVERY_ROW = os.environ.get("SAILVIZ_EVERY_TRANSFER")
 at_length = pytest.mark.skipif(not EVERY_ROW, reason="takes seconds each: set SAILVIZ_EVERY_TRANSFER=1")
@@ -108,6 +113,44 @@ def test_a_flight_past_the_sun_touches_its_limit_once(name):
     assert there[:2] @ there[2:4] == pytest.approx(0, abs=1e-8)
     assert np.hypot(*x[:2]) == pytest.approx(far, abs=1e-8)
     assert np.hypot(*x[2:4]) * AU / time_unit(AU) / 1e3 == pytest.approx(speed, abs=1e-3)
+
+
+def numbers(text):
+    return [float(word) for word in re.findall(r"-?\d+\.\d+", text)]
+
+
+def test_where_none_is_found_a_flight_that_breaks_the_limit_is_told(monkeypatch):
+    """To 0.8 au, and never nearer than 0.9."""
+    free = circle_to_end(AU, AtRadius(0.8), "ideal", 1e-3)
+    monkeypatch.setattr(to_ends, "_touching", lambda *_: ([], Search((), 0, 0, np.inf, np.empty(0))))
+    found = circle_to_end(AU, AtRadius(0.8), "ideal", 1e-3, Keeping(perihelion=0.9))
+    assert not found.feasible
+    closest, days = numbers(found.ending.nearest)
+    assert closest == 0.8
+    assert np.abs(free.solution_times / DAY - days).min() < 1e-4
+    assert any("limit" in advice for advice in found.ending.advice)
+
+
+def test_where_none_is_found_the_nearest_flight_that_is_told_is_a_true_one(monkeypatch):
+    kept = []
+
+    def without_success(flight, spans, n, *words, **named):
+        kept.append((flight, search(flight, spans, 64, *words, **named)))
+        return replace(kept[-1][1], extremals=())
+
+    monkeypatch.setattr(to_ends, "search", without_success)
+    found = circle_to_end(AU, AtRadius(MARS), "ideal", 1e-3)
+    assert not found.feasible
+    flight, best = min(kept, key=lambda one: one[1].nearest_miss)
+    start, span = flight.starts(best.nearest[None])[0], best.nearest[SPAN]
+    told = SimpleNamespace(
+        start=start, time=span * time_unit(AU), touches=(), initial_radius=AU, characteristic_acceleration=1e-3
+    )
+    (x,) = flown_by_scipy(told)
+    r, speed = np.hypot(*x[:2]), AU / time_unit(AU) / 1e3
+    away, across = x[:2] @ x[2:4] / r * speed, (x[0] * x[3] - x[1] * x[2]) / r * speed
+    assert numbers(found.ending.nearest) == pytest.approx([r, told.time / DAY, away, across], abs=6e-5)
+    assert abs(r - MARS) < 0.1
 
 
 def test_solar_sail_problem_0_of_pykep_is_answered_below_its_quoted_time():

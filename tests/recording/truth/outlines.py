@@ -110,13 +110,10 @@ def film_of(f, row) -> tuple[float, float, float]:
     if not told:
         return FILM
     gone = 1 - 0.5 ** (f.truth.film["dose_yr"][row] / (told["half_dose"] / YEAR))
-    r, front, back = (
-        0.91 * (1 - told["factor"] * gone / (1 + told["factor"])),
-        0.025 * (1 + told["factor"] * gone),
-        0.27,
-    )
+    front, back = 0.025 * (1 + told["factor"] * gone), 0.27
+    r, mirrored = (fresh * (1 - told["factor"] * gone / (1 + told["factor"])) for fresh in (0.91, 0.94))
     heat = (1 - r) * (front * 0.79 - back * 0.67) / (front + back)
-    return (1 - 0.94 * r) / 2, 0.94 * r, (0.79 * r * (1 - 0.94) + heat) / 2  # (3.18)-(3.20)
+    return (1 - mirrored * r) / 2, mirrored * r, (0.79 * r * (1 - mirrored) + heat) / 2  # (3.18)-(3.20)
 
 
 def same_surface(own: Outline, points, film: bool) -> None:

@@ -12,7 +12,6 @@ followed from s = 0 to 1.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -28,7 +27,6 @@ SPANS = np.geomspace(0.25, 12.0, 90)  # flight times looked at: two weeks to two
 AIMED = 3  # times that a flight is aimed at where the target is, from where the last one came to
 TRIED = 6  # flight times that come nearest and are followed
 NO_THRUST = 1e-12  # share of a sail's strength that moves nothing
-SMALLEST_SHARE = 0.01  # of the way on which a flight is followed
 
 
 @dataclass(frozen=True)
@@ -91,31 +89,12 @@ class Passing(Meeting):
         if residual <= NEAR:
             return self.sharpen(at_once)
 
-        def elsewhere(share: float) -> Passing:
+        def elsewhere(share: float, guess: Unknowns) -> tuple[Unknowns, float]:
             x, y, z = ((1 - share) * offset).tolist()
-            return replace(self, offset=(x, y, z))
+            return replace(self, offset=(x, y, z)).search(guess, self.smoothing)
 
         return self._along(unknowns, elsewhere)
 
     def _let_go(self, unknowns: Unknowns) -> Unknowns | None:
         """The flight past the target that one becomes which meets it, or None."""
-        return self._along(unknowns, lambda share: replace(self, free=share))
-
-    def _along(self, unknowns: Unknowns, problem_at: Callable[[float], Passing]) -> Unknowns | None:
-        """The flight that one becomes along problems from share 0 to 1, the last of which is this one, or None."""
-        x, residual = problem_at(0.0).search(unknowns, self.smoothing)
-        if residual > NEAR:
-            return None
-        share, step, before, at = 0.0, 0.1, None, 0.0
-        while share < 1.0:
-            following = min(1.0, share + step)
-            guess = x if before is None else x.ahead(before, following - share, share - at)
-            y, residual = problem_at(following).search(guess, self.smoothing)
-            if residual > NEAR:
-                step *= 0.4
-                if step < SMALLEST_SHARE:
-                    return None
-                continue
-            before, at, x, share = x, share, y, following
-            step *= 1.5
-        return self.sharpen(x)
+        return self._along(unknowns, lambda share, x: replace(self, free=share).search(x, self.smoothing))

@@ -15,6 +15,7 @@ moved along its orbit, both ways, from where that flight arrives to where it is.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -56,7 +57,7 @@ APART = 10 * SPREAD  # s between speeds that are differenced: moments are rounde
 STRAYS = 0.02  # of the flight time, from what the slope makes of it: more is another family
 SHORTEST_STEP = 0.02 * DAY  # s, of the departure of a flight that is handed on: some take 60 days longer for each day
 NEARBY = 15  # steps of a search that begins next to its solution
-SMALLEST_SHIFT = 0.01  # of the way that the target is moved
+SMALLEST_SHARE = 0.01  # of the way on which a flight is followed
 
 
 class Ends(NamedTuple):
@@ -184,17 +185,26 @@ class Meeting:
 
     def _moved(self, unknowns: Unknowns, shift: float) -> Unknowns | None:
         """The true solution that a flight becomes as the target moves to its place from a shift in s, or None."""
-        x, residual = self.search(unknowns, self.smoothing, shift=shift)
+        return self._along(unknowns, lambda share, x: self.search(x, self.smoothing, shift=shift * (1 - share)))
+
+    def _along(
+        self, unknowns: Unknowns, search: Callable[[float, Unknowns], tuple[Unknowns, float]]
+    ) -> Unknowns | None:
+        """The solution that a flight becomes along problems from share 0 to 1, the last of which is this one, or None.
+
+        search(share, guess) -> the flight of a problem and its residual.
+        """
+        x, residual = search(0.0, unknowns)
         if residual > NEAR:
             return None
         share, step, before, at = 0.0, 0.1, None, 0.0
         while share < 1.0:
             following = min(1.0, share + step)
             guess = x if before is None else x.ahead(before, following - share, share - at)
-            y, residual = self.search(guess, self.smoothing, shift=shift * (1 - following))
+            y, residual = search(following, guess)
             if residual > NEAR:
                 step *= 0.4
-                if step < SMALLEST_SHIFT:
+                if step < SMALLEST_SHARE:
                     return None
                 continue
             before, at, x, share = x, share, y, following

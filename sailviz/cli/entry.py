@@ -44,12 +44,12 @@ COMMANDS = {  # name, which is also that of the module -> function there
 }
 
 
-# Building the sections of a scene makes very many objects that stay: looking for garbage among them again and again,
-# and for plugins of pydantic in every installed package, is about a tenth of the time of `check`. No matrix here is
-# worth the threads that OpenBLAS starts when numpy is imported: 0.1 s of CPU.
+# Importing what a flight needs and building the sections of a scene makes some 200,000 objects that stay: looking for
+# garbage among them, and for plugins of pydantic in every installed package, is about a tenth of the time of `check`
+# and of a short flight. No matrix here is worth the threads that OpenBLAS starts when numpy is imported: 0.1 s of CPU.
 os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-gc.set_threshold(200_000, 50, 50)
+gc.set_threshold(400_000, 50, 50)
 # And looking through all of them once more when the process ends, where they go anyway, is a fifth of a short flight.
 atexit.register(gc.freeze)
 

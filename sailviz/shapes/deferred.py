@@ -1,7 +1,7 @@
 """Modules that a library names when it is imported, loaded only when one of their names is first used.
 
-Of the time that `import trimesh` takes, four fifths go into parts of scipy that none of our shapes need: convex hulls,
-minimizers, searches for neighbours, sparse matrices. They cost as much as a whole flight.
+Of the time that `import trimesh` takes, nine tenths go into what none of our shapes need: convex hulls, minimizers,
+searches for neighbours and sparse matrices of scipy, graphs, readers of XML. They cost more than a whole flight.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
+from importlib.util import find_spec
 from types import ModuleType
 from typing import Any
 
@@ -23,7 +24,7 @@ class Deferred:
     def _real(self) -> Any:
         module, name, library = self.source
         load(module, library)
-        return getattr(import_module(module), name)
+        return _named(import_module(module), name)
 
     def __call__(self, *values: Any, **options: Any) -> Any:
         return self._real()(*values, **options)
@@ -53,9 +54,9 @@ def deferred(library: str, *modules: str) -> Iterator[None]:
     """Inside this context a library is imported that names `modules`; those not yet loaded are not loaded by it.
 
     They are loaded when the library first uses one of their names. Nobody else ever sees what stands for them, save a
-    thread that imports one of them at that very moment.
+    thread that imports one of them at that very moment. Of what is not installed the library is told so at once.
     """
-    waiting = [module for module in modules if module not in sys.modules]
+    waiting = [module for module in modules if module not in sys.modules and find_spec(module.partition(".")[0])]
     for module in waiting:
         sys.modules[module] = DeferredModule(module, library)
     try:
@@ -76,4 +77,12 @@ def load(module: str, library: str) -> None:
             if isinstance(value, DeferredModule) and value.__name__ == module:
                 setattr(part, key, real)
             elif type(value) is Deferred and value.source[0] == module:
-                setattr(part, key, getattr(real, value.source[1]))
+                setattr(part, key, _named(real, value.source[1]))
+
+
+def _named(module: ModuleType, name: str) -> Any:
+    """What `from module import name` gives: a name of the module, or a module below it that is not loaded yet."""
+    try:
+        return getattr(module, name)
+    except AttributeError:
+        return import_module(f"{module.__name__}.{name}")

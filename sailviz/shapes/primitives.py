@@ -1,6 +1,7 @@
 """trimesh as the other shapes use it: closed and open bodies of revolution, boxes, rods, and several joined to one.
 
-All shapes import trimesh from here, since what of scipy it names is put off. No units; pure geometry, no drawing.
+All shapes import trimesh from here, since what it names and no shape needs is put off. No units; pure geometry, no
+drawing.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from sailviz.shapes.deferred import deferred
 
-with deferred("trimesh", "scipy.spatial", "scipy.optimize", "scipy.ndimage", "scipy.sparse"):
+with deferred("trimesh", "scipy.spatial", "scipy.optimize", "scipy.ndimage", "scipy.sparse", "networkx", "lxml"):
     import trimesh
     from trimesh import Trimesh, creation
 

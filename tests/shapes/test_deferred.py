@@ -1,4 +1,4 @@
-"""Shapes load trimesh without the parts of scipy that they do not need, and nobody is the poorer for it."""
+"""Shapes load trimesh without what they do not need of scipy and others, and nobody is the poorer for it."""
 
 import subprocess
 import sys
@@ -13,7 +13,7 @@ def fresh(script):
 
 
 SHAPES = "import sys\nfrom sailviz.shapes import planets, primitives, sails, tethers\n"
-PARTS = ("scipy.spatial", "scipy.optimize", "scipy.ndimage", "scipy.sparse", "scipy.linalg")
+PARTS = ("scipy.spatial", "scipy.optimize", "scipy.ndimage", "scipy.sparse", "scipy.linalg", "networkx", "lxml.etree")
 
 
 def test_drawing_every_shape_loads_none_of_what_is_put_off():
@@ -34,6 +34,32 @@ def test_trimesh_finds_what_was_put_off_when_it_needs_it():
         "print(round(trimesh.creation.icosphere().bounding_sphere.volume, 1))"
     )
     assert fresh(script) == ["True", "QhullError", "cKDTree", "True", "False", "4.2"]
+
+
+def test_trimesh_walks_graphs_and_writes_and_reads_3mf_with_what_was_put_off():
+    pytest.importorskip("lxml")
+    script = SHAPES + (
+        "import io, trimesh\n"
+        "box = trimesh.creation.box(extents=[2.0, 3.0, 4.0])\n"
+        "turned = box.copy()\n"
+        "turned.faces[0] = turned.faces[0][::-1]\n"
+        "trimesh.repair.fix_winding(turned)\n"
+        "print(box.vertex_adjacency_graph.number_of_edges(), turned.is_winding_consistent)\n"
+        "print('lxml.etree' in sys.modules)\n"
+        "again = trimesh.load_scene(io.BytesIO(box.export(file_type='3mf')), file_type='3mf')\n"
+        "print(round(again.volume, 6), trimesh.exchange.threemf.etree is sys.modules['lxml.etree'])"
+    )
+    assert fresh(script) == ["18", "True", "False", "24.0", "True"]
+
+
+def test_the_library_is_told_at_once_what_is_not_installed():
+    script = (
+        "from sailviz.shapes.deferred import deferred\n"
+        "with deferred('nobody', 'not_installed_anywhere', 'xml.dom'):\n"
+        "    try:\n        import not_installed_anywhere\n    except ImportError:\n        print('absent')\n"
+        "    from xml import dom\n    print(type(dom).__name__)"
+    )
+    assert fresh(script) == ["absent", "DeferredModule"]
 
 
 def test_others_that_import_scipy_get_scipy():

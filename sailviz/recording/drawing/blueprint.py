@@ -21,6 +21,9 @@ NOW = rrb.TimeRangeBoundary.cursor_relative()
 WHOLE_TIME = rrb.TimeAxis(view_range=rr.TimeRange(start=ENDLESS, end=ENDLESS))
 ROWS = [104, 728]  # shares of the line of the moment and of everything below it
 COLUMNS = [63, 37]
+LEFT = 780  # of which the words take so much at least and at most; lines that fit at least, and what one takes
+WORDS = 184, 214
+LINES, LINE = 7.6, 16.0
 WITH_AXIS = [300, 190, 290]
 BARS = "Flights [%] by distance from the calm flight [0.001 au]"
 
@@ -64,8 +67,9 @@ def left(layout: Layout) -> rrb.Container:
         rrb.TextLogView(origin="/log", name="Events", columns=event_columns(layout)),
         active_tab=0,
     )
-    shares = [566, 214] if layout.arrivals else [596, 184]
-    return rrb.Vertical(rrb.Tabs(*spaces, active_tab=0), words, row_shares=shares)
+    longer = max(0.0, layout.words - LINES) * LINE
+    below = WORDS[1] if layout.arrivals else min(WORDS[0] + longer, WORDS[1])
+    return rrb.Vertical(rrb.Tabs(*spaces, active_tab=0), words, row_shares=[LEFT - below, below])
 
 
 def right(layout: Layout) -> rrb.Container:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Iterable
 
 import numpy as np
@@ -13,6 +14,7 @@ from sailviz.recording.drawing.phrases import LONG, clock
 from sailviz.run import gaps
 from sailviz.run.arrays import Event, Setting
 
+LINE = 158  # characters of a line of the panel in a window of 1600 x 900
 WALL = "the **wall on the trail** is the push: its height and brightness say how hard, its lean says which way"
 
 
@@ -23,12 +25,18 @@ def about(setting: Setting, notes: Iterable[str] = (), steady: Iterable[str] = (
     """
     constants = list(steady)
     ends = ["Steady all along: " + " · ".join(f"**{words}**" for words in constants)] if len(constants) > 1 else []
-    ends += [f"*{aside}*"] if aside else []
+    first = " ".join(part for part in (setting.about.strip(), f"*{aside}*" if aside else "") if part)
     table = scoreboard(setting) if setting.ensembles else []
     told = () if len(setting.ensembles) > 1 else (*setting.look_for, *notes)  # the table takes their room
     hints = [f"- {hint.strip()}" for hint in told]
-    parts = [[setting.about.strip()], table, hints, *([words] for words in ends)]
+    parts = [[first] if first else [], table, hints, *([words] for words in ends)]
     return "\n\n".join("\n".join(part) for part in parts if part)
+
+
+def lines_of(text: str) -> float:
+    """How many lines the words take in the panel of a window of 1600 x 900; a gap between paragraphs is 0.6 of one."""
+    plain = text.replace("*", "").strip().split("\n")
+    return sum(max(1, len(textwrap.wrap(part, LINE))) if part.strip() else 0.6 for part in plain)
 
 
 def gap_words(setting: Setting) -> list[str]:

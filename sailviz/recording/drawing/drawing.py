@@ -19,7 +19,7 @@ from sailviz.recording.drawing.arrival_plane import arrivals_of
 from sailviz.recording.drawing.axis_trace import TRACE, has_axis, in_front, log_axis
 from sailviz.recording.drawing.blueprint import blueprint
 from sailviz.recording.drawing.curves import Curves, words_of
-from sailviz.recording.drawing.description import WALL, about, event_line, gap_words
+from sailviz.recording.drawing.description import WALL, about, event_line, gap_words, lines_of
 from sailviz.recording.drawing.devices import drawing_of
 from sailviz.recording.drawing.ensemble_plots import plots_of_ensembles
 from sailviz.recording.drawing.ensembles import log_ensembles
@@ -136,6 +136,7 @@ class Drawing:
         ]
         text = about(self._setting, notes, steady, aside)
         self._picture.log_static("/about", rr.TextDocument(text, media_type=rr.MediaType.MARKDOWN))
+        layout.words = lines_of(text)
         log_now(self._picture, story.told)
         self._stream.send_blueprint(blueprint(layout), make_active=True, make_default=True)
 
@@ -157,6 +158,7 @@ class Drawing:
         log_now_together(picture, flights)
         begin, end = span_of(flights)
         layout = self._layout(spaces, close, plots, spans, story, last, end - begin)
+        layout.words = lines_of(text)
         self._stream.send_blueprint(blueprint(layout), make_active=True, make_default=True)
 
     def _spaces(

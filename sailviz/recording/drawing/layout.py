@@ -40,6 +40,7 @@ class Layout:
     arrivals: tuple[Arrival, ...] = ()  # planes in which ensembles are seen
     heat: tuple[str, str] | None = None  # name and path of the plane of temperature over distance
     bars: bool = False  # whether histograms stand below the curves
+    words: float = 0.0  # lines that the words below the main view take
     spans: dict[str, Span] = field(default_factory=dict)
     timelines: tuple[str, ...] = ("sim_time", "step")
     speed: float = 1.0  # seconds of the run in one second of replay

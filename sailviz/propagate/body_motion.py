@@ -321,7 +321,7 @@ def asked(t, y, p, px, py, pz, dx, dy, dz, ux, uy, uz, strength, out):
 @inlined
 def point_normal(y, p, b):
     """Tell the model's steering where the craft stands, and what callbacks push how it is turned."""
-    if b.air != 0.0 or b.mass != 0.0:
+    if b.air != 0.0 or b.mass != 0.0 or p.places.heat != 0:
         tables = array_at(p.places.address, p.places.end)
         at = p.places.body + WORK + Y
         for j in range(Q, SIZE):

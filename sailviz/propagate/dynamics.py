@@ -114,6 +114,7 @@ def model(
     wheel: Sequence[float] = (),
     shape_air: Sequence[float] | None = None,
     body: Sequence[float] | None = None,
+    heat: Sequence[float] | np.ndarray[Any, Any] | None = None,
     body_control: Callback | None = None,
     user_steering: int = 0,
     user_force: int = 0,
@@ -128,7 +129,8 @@ def model(
     `magnetosphere`, `by_light`, `pushed`; sky_table of `environment.sky.packed`; film : Numbers of
     `propulsion.film_ageing`, of a film that ages or whose temperature is asked for; wheel : Numbers of
     `propulsion.esail_wheel`, of a wheel that is a body; shape_air of `shape_air_callback.numbers`; body : of
-    `body_motion.packed`, body_control : what turns it on purpose.
+    `body_motion.packed`, body_control : what turns it on purpose; heat : of `propulsion.shaped_heat`, of a shape whose
+    temperature is asked for.
     """
     parameters = np.zeros(1, PARAMETERS)
     p = parameters[0]
@@ -197,6 +199,7 @@ def model(
         "sky": sky_table,
         "shape_air": shape_air,
         "body": body,
+        "heat": heat,
     }
     for place, rows in named.items():
         if rows is not None:

@@ -83,6 +83,7 @@ class Places(NamedTuple):
     sky: int = 0  # places of bodies, see environment.sky
     shape_air: int = 0  # air on a shape, see shape_air_callback
     body: int = 0  # numbers of a craft whose attitude moves, see body_motion
+    heat: int = 0  # of a shape's films, see shape_heat_callback
     end: int = 0  # length of the array
     address: int = 0  # of the array itself, which the Model keeps alive
 

@@ -50,9 +50,14 @@ def asked_for(scene: Scene, stem: str) -> list[str]:
 def tells_temperature(scene: Scene) -> bool:
     """Whether the film's temperature is reckoned and recorded."""
     device = scene.device
-    if not isinstance(device, SolarSail) or device.shape is not None or not radiates(device):
+    if not isinstance(device, SolarSail) or not radiates(device):
         return False
     return device.hottest is not None or device.ageing is not None or bool(asked_for(scene, "film_temperature"))
+
+
+def heats_shape(scene: Scene) -> bool:
+    """Whether that is the temperature of a shape's films."""
+    return isinstance(scene.device, SolarSail) and scene.device.shape is not None and tells_temperature(scene)
 
 
 def tells_film(scene: Scene) -> bool:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from sailviz.shapes import light_table
+from sailviz.shapes import facing, light_table
 from sailviz.shapes.facets import Shape
 from sailviz.shapes.light_force import LIGHT, Law
 from sailviz.shapes.light_table import CELLS, COLUMNS, NODES, LightTable
@@ -90,6 +90,21 @@ def tables_of(
             if file is not None:
                 _write(file, one.numbers)
     return [found[i] for i in range(len(shapes))]
+
+
+def shares_of(shape: Shape, films: Sequence[Sequence[int]], cells: int) -> np.ndarray:
+    """`facing.shares`, from the disk where they have been made before."""
+    place, form = folder(), (len(films), 6, cells + 1, cells + 1, 2)
+    light_table.check(shape, cells)
+    parts = ("shares", FORMAT, shape.digest(), tuple(map(tuple, films)), cells, ray_caster())
+    file = None if place is None else place / f"{hashlib.sha256(repr(parts).encode()).hexdigest()[:20]}.table"
+    kept = None if file is None else _read(file, int(np.prod(form)))
+    if kept is not None:
+        return kept.reshape(form)
+    made = facing.shares(shape, films, cells)
+    if file is not None:
+        _write(file, made)
+    return made
 
 
 def _read(file: Path, count: int) -> np.ndarray | None:

@@ -105,12 +105,26 @@ class Shadows:
         if self._caster is None:
             return np.asarray(found)
         which, facet = np.nonzero(met)
-        lift = self._elements.normal[facet] * (-np.sign(d[which, facet]) * self._off)[:, None]
+        found[which, facet] = self._share(u[which], facet, d[which, facet])
+        return np.asarray(found)
+
+    def reached(self, u: np.ndarray, facet: np.ndarray) -> np.ndarray:
+        """Share (n,) that light along each of u (n, 3) reaches of one facet, by its number, (n,)."""
+        d = np.sum(u * self._elements.normal[facet], axis=1)
+        met = (np.abs(d) > EDGE_ON) & ((d < 0) | self._meets_back[facet])
+        found = np.where(met, 1.0, 0.0)
+        if self._caster is not None and met.any():
+            found[met] = self._share(u[met], facet[met], d[met])
+        return np.asarray(found)
+
+    def _share(self, u: np.ndarray, facet: np.ndarray, d: np.ndarray) -> np.ndarray:
+        """Share (m,) of facets (m,) that no other hides from light along u (m, 3); d (m,) : components of their normals
+        along it."""
+        lift = self._elements.normal[facet] * (-np.sign(d) * self._off)[:, None]
         hits = np.zeros(len(facet))
         for points in self._points:
-            hits += self._caster.intersects_any(points[facet] + lift, -u[which])
-        found[which, facet] = 1.0 - hits / len(self._points)
-        return np.asarray(found)
+            hits += self._caster.intersects_any(points[facet] + lift, -u)
+        return np.asarray(1.0 - hits / len(self._points))
 
 
 def _caster(mesh: Trimesh, backend: str) -> Any:

@@ -23,6 +23,7 @@ from sailviz.propagate.sky_quantities import sky_quantities
 from sailviz.propagate.wheel_callback import wheel_quantities
 from sailviz.propulsion.devices import PLASMA_BRAKE
 from sailviz.scene.device import air_on_facets
+from sailviz.scene.film import heats_shape
 from sailviz.scene.phases import Phase, Until, end_of, until_of
 from sailviz.scene.quantities import ON_A_CIRCLE
 from sailviz.scene.sky import has_sky, magnetosphere_of
@@ -142,7 +143,12 @@ def quantities_watched(scene: Scene, device: int, phase: Phase | None = None) ->
     stems -= set(OF_BODY)  # which what turns knows by itself
     blown = magnetosphere_of(scene) != "none"
     if any(stem in OF_FILM for stem in stems):
-        return film_quantities(not blown and all(stem in OF_FILM for stem in stems), has_sky(scene))
+        alone = not blown and all(stem in OF_FILM for stem in stems)
+        if heats_shape(scene):
+            from sailviz.propagate.shape_heat_callback import shape_heat_quantities
+
+            return shape_heat_quantities(alone, has_sky(scene))
+        return film_quantities(alone, has_sky(scene))
     if air_on_facets(scene.device) and "air_drag" in stems:
         if moves(scene):
             from sailviz.propagate.body_air import body_air_quantities

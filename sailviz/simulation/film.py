@@ -78,17 +78,21 @@ def dose_at_start(scene: Scene) -> float | None:
 
 
 def film_columns(scene: Scene, model: Model, time: Array, states: Array, factor: Array) -> Columns:
-    """Columns (n,) of /film. time (n,) s, states (7, n), their last the dose where the film ages, factor (n,) of the
-    thrust. A temperature that is not known is NaN: that of a sail that is stowed or switched off, and of a film whose
-    back is lit and not told."""
+    """Columns (n,) of /film. time (n,) s, states (7, n), their last the dose where the film ages, or those of a craft
+    that turns, factor (n,) of the thrust. The temperature is that of the hottest facet of a shape's films. One that is
+    not known is NaN: that of a sail that is stowed or switched off, and of a film whose back is lit and not told."""
     if not tells_film(scene):
         return {}
-    values = film_callback.observe_film(time, np.ascontiguousarray(states), factor, model.parameters)
+    values = film_callback.observe_film(time, np.ascontiguousarray(states[:7]), factor, model.parameters)
     columns: Columns = {}
     if ages(scene):
         columns["dose_yr"] = values[film_callback.DOSE] / YEAR
     if tells_temperature(scene):
         warm = values[film_callback.TEMPERATURE]
+        if model.named.places.heat:
+            from sailviz.propagate.shape_heat_callback import observe_heat  # machine code that other sails do without
+
+            warm = observe_heat(time, states, factor, model.parameters)
         columns["temperature_K"] = np.where(warm > 0.0, warm, np.nan)
     if ages(scene):
         columns |= {name: values[row] for row, name in ((film_callback.B1, "b1"), (film_callback.B2, "b2"))}
@@ -110,7 +114,8 @@ def film_words(scene: Scene) -> Words:
         warm = float(temperature(AU, 0.0, optics(device), irradiance=irradiance_of(scene)))
         rows.append(("film at 1 au", f"{warm:.4g} K facing the light"))
     if device.hottest is not None:
-        rows.append(("film limit", f"{device.hottest:g} K: {_limit(device, irradiance_of(scene))}"))
+        counts = "" if device.shape is None else "; of a shape's films the hottest facet counts"
+        rows.append(("film limit", f"{device.hottest:g} K: {_limit(device, irradiance_of(scene))}{counts}"))
     return rows
 
 

@@ -19,7 +19,7 @@ from sailviz.propagate.events import Watch, watch
 from sailviz.propagate.voltage_callback import R_REF, U_REF, WANTED, voltage_callback
 from sailviz.run.arrays import Body, Phase
 from sailviz.scene.device import DistanceControl, SolarSail, control_of
-from sailviz.scene.film import ages
+from sailviz.scene.film import ages, heats_shape
 from sailviz.scene.loading import Scene
 from sailviz.scene.phases import Phase as PhaseSection
 from sailviz.scene.phases import scene_of
@@ -163,6 +163,7 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         quantity=quantities_watched(scene, device.kind, phase),
         wheel=wheel_numbers(scene, strength or 0.0),
         film=film_numbers(scene, strength or 0.0, level),
+        heat=_heat_of(scene),
         **addresses,
         **merged(
             {"forces": device.forces},
@@ -211,6 +212,15 @@ def plan(scene: Scene, steering: object = None, force: object = None, taken: Han
         limit,
         taken is None or taken.in_use,
     )
+
+
+def _heat_of(scene: Scene) -> np.ndarray | None:
+    """Numbers of the films of a shape whose temperature is asked for."""
+    if not heats_shape(scene):
+        return None
+    from sailviz.simulation.shape_heat import shape_heat  # trimesh, which flat sails do without
+
+    return shape_heat(scene)
 
 
 def _level(scene: Scene, phase: PhaseSection | None) -> float:

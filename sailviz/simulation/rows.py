@@ -207,7 +207,7 @@ def observed(p: Plan, setting: Setting, time: np.ndarray, states: np.ndarray, fi
         environment,
         {},
         devices=devices,
-        film=film_columns(p.scene, p.model, time, np.ascontiguousarray(states[:7]), factor),
+        film=film_columns(p.scene, p.model, time, states, factor),
     )
 
 

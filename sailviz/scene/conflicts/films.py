@@ -78,8 +78,6 @@ def _warmth(scene: Scene) -> Faults:
         found.append((where, NEEDS_OPTICS))
     elif not radiates(device):
         found.append((where, NO_HEAT))
-    if device.shape is not None:
-        found.append((where, "temperatures are known of flat sails only, not of one with a shape"))
     if device.control is not None:
         found.append((where, "how warm a film gets that darkens is not known: control or hottest"))
     return found
@@ -117,9 +115,10 @@ def _temperature_asked(scene: Scene) -> Faults:
     """The temperature of a film, where there is none; and what it is warmed by."""
     found: Faults = []
     places, device = asked_for(scene, "film_temperature"), scene.device
-    warm = isinstance(device, SolarSail) and device.shape is None and device.control is None
+    warm = isinstance(device, SolarSail) and device.control is None
     if places and not warm:
-        found += [(place, "the temperature is known of the film of a flat solar sail only") for place in places]
+        words = "the temperature is known of the film of a solar sail only, of one without control"
+        found += [(place, words) for place in places]
     elif places and not radiates(device):
         found += [(place, NO_HEAT if has_optics(device) else f"film_temperature {NEEDS_OPTICS}") for place in places]
     shone_on = ages(scene) or places or getattr(device, "hottest", None)

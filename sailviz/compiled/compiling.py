@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+import llvmlite.binding as llvm
 import numba
+from llvmlite import ir
 from numba.core import registry, sigutils, types
 from numba.core.ccallback import CFunc
 from numba.core.codegen import CPUCodeLibrary, JITCodeLibrary
@@ -17,6 +19,8 @@ from sailviz.compiled.decorators import BARE, OPTIONS, WITHIN, stamp
 from sailviz.compiled.machine_code import MachineCode
 
 KNOWN_WITHOUT_NUMBA = ("numba_nextafter",)  # of numba's own functions: see machine_code
+WORD, STATUS, POINTER = ir.IntType(64), ir.IntType(32), ir.IntType(8).as_pointer()
+MISFIT, FAILED = -1, -2  # what a function for Python returns where it was not called, and where it failed
 
 
 def compile_native(function: Callable[..., Any], signature: Any, merged: str = "") -> MachineCode | None:
@@ -26,6 +30,58 @@ def compile_native(function: Callable[..., Any], signature: Any, merged: str = "
     function : compiled without reference counting. signature : of numba, or how numba writes it. merged : name of one
     that it alone calls, which is optimised as part of it only.
     """
+    made = _compile(function, signature, merged)
+    return None if made is None else MachineCode(made[0], _needs(made[1]), made[2].emit_object(made[1]))
+
+
+def compile_for_python(function: Callable[..., Any], merged: str, count: int) -> MachineCode | None:
+    """Machine code of a function of Python's own, of `count` arguments, which returns an integer; None as above.
+
+    function : int64(int64, int64), of the address of a tuple and of that where the arguments stand; merged : as above.
+    """
+    made = _compile(function, "int64(int64, int64)", merged)
+    if made is None:
+        return None
+    name, module, machine = made
+    way_in = _way_in(name, count)
+    way_in.triple, way_in.data_layout = module.triple, module.data_layout
+    module.link_in(llvm.parse_assembly(str(way_in)))
+    return MachineCode(way_in.name, _needs(module), machine.emit_object(module))
+
+
+def _way_in(name: str, count: int) -> ir.Module:
+    """A function as Python calls those that are built in, PyObject *(PyObject *self, PyObject **arguments, n), which
+    calls the compiled one with the addresses of both while other threads of Python may run."""
+    module = ir.Module(name + ".from_python")
+
+    def known(name: str, result: ir.Type, *arguments: ir.Type) -> ir.Function:
+        return ir.Function(module, ir.FunctionType(result, arguments), name)
+
+    compiled = known(name, STATUS, WORD.as_pointer(), POINTER.as_pointer(), WORD, WORD)
+    pause, go_on = known("PyEval_SaveThread", POINTER), known("PyEval_RestoreThread", ir.VoidType(), POINTER)
+    number = known("PyLong_FromLongLong", POINTER, WORD)
+    way_in = known(module.name, POINTER, POINTER, POINTER, WORD)
+    builder = ir.IRBuilder(way_in.append_basic_block())
+    answer, error = builder.alloca(WORD), builder.alloca(POINTER)
+    builder.store(ir.Constant(WORD, MISFIT), answer)
+    itself, arguments, given = way_in.args
+    with builder.if_then(builder.icmp_signed("==", given, ir.Constant(WORD, count))):
+        thread = builder.call(pause, ())
+        places = builder.ptrtoint(itself, WORD), builder.ptrtoint(arguments, WORD)
+        status = builder.call(compiled, (answer, error, *places))
+        builder.call(go_on, (thread,))
+        with builder.if_then(builder.icmp_signed("!=", status, ir.Constant(STATUS, 0))):
+            builder.store(ir.Constant(WORD, FAILED), answer)
+    builder.ret(builder.call(number, (builder.load(answer),)))
+    return module
+
+
+def _needs(module: Any) -> tuple[str, ...]:
+    return tuple(one.name for one in module.functions if one.is_declaration and not one.name.startswith("llvm."))
+
+
+def _compile(function: Callable[..., Any], signature: Any, merged: str) -> tuple[str, Any, Any] | None:
+    """(name, its module, what makes machine code of it)."""
     njit: Any = numba.njit
     with global_compiler_lock, _object_only(), _remembered_types(), _optimised_once(merged):
         dispatcher = njit(signature, **BARE, **WITHIN)(function)
@@ -33,10 +89,10 @@ def compile_native(function: Callable[..., Any], signature: Any, merged: str = "
         library = result.library
         library._ensure_finalized()
     module = library._final_module
-    needs = [one.name for one in module.functions if one.is_declaration and not one.name.startswith("llvm.")]
+    needs = _needs(module)
     if any(name.startswith(("numba_", "NRT_", "Py")) and name not in KNOWN_WITHOUT_NUMBA for name in needs):
         return None
-    return MachineCode(result.fndesc.llvm_func_name, tuple(needs), library._codegen._tm.emit_object(module))
+    return result.fndesc.llvm_func_name, module, library._codegen._tm
 
 
 def compile_by_numba(function: Callable[..., Any], signature: Any) -> tuple[int, object]:

@@ -17,13 +17,10 @@ from sailviz.compiled.decorators import OPTIONS, called
 from sailviz.compiled.machine_code import CannotLoadError, MachineCode
 from sailviz.compiled.waiting import compiling
 
-_PLACE = ctypes.c_void_p
-_ANSWER = ctypes.c_int64 * 2  # the result, and where an error would be described
-_STATUS = ctypes.CFUNCTYPE(ctypes.c_int, _PLACE, _PLACE, _PLACE)  # where the result goes, where an error, the arguments
 _REAL, _WHOLE = struct.Struct("d"), struct.Struct("q")
-MISFIT = -1  # result of an entry whose arguments do not fit
-TYPES = (np.ndarray, float, np.float64)  # of what is handed over: the types that compiled code looks for
-_addressof = ctypes.addressof
+MISFIT, FAILED = -1, -2  # results of a call whose arguments do not fit, and of one that failed: `compiling`
+TYPES = (np.ndarray, float, np.float64)  # the types that compiled code looks for in what is handed over
+AS_AN_ARRAY = 0x80  # METH_FASTCALL: arguments are handed over as an array of addresses and their number
 
 
 DTYPES: dict[str, np.dtype[Any]] = {
@@ -52,11 +49,22 @@ class Kind:
         self.dtype: np.dtype[Any] = dtype
 
 
+class _Definition(ctypes.Structure):
+    """Python's PyMethodDef."""
+
+    _fields_ = (
+        ("name", ctypes.c_char_p),
+        ("function", ctypes.c_void_p),
+        ("flags", ctypes.c_int),
+        ("help", ctypes.c_char_p),
+    )
+
+
 class Entry:
     """A function of arrays and numbers that Python calls and that returns an integer, not below zero.
 
-    Its arguments are handed over as one address, that of their tuple; compiled code reads them out of numpy's arrays by
-    itself (`unpacking.py`), which costs a fifth of handing over what an array consists of. TypeError where they are not
+    It is called as a function of Python's own, built in; compiled code reads the arguments out of numpy's arrays by
+    itself (`unpacking.py`), which costs a tenth of handing over what an array consists of. TypeError where they are not
     of the kinds declared.
     """
 
@@ -76,26 +84,33 @@ class Entry:
         return self.kernel._numba_type_
 
     def _compiled(self) -> MachineCode | None:
-        from sailviz.compiled.compiling import compile_native
+        from sailviz.compiled.compiling import compile_for_python
         from sailviz.compiled.unpacking import unpacking
 
         kernel = self.kernel.bare
         fits, arguments = unpacking(self.kinds)
 
-        def unpacked(place: Any) -> Any:
-            if not fits(place):
+        def unpacked(types: Any, place: Any) -> Any:
+            if not fits(types, place):
                 return MISFIT
             return kernel(*arguments(place))
 
-        return compile_native(unpacked, "int64(int64)", self.py_func.__qualname__)
+        return compile_for_python(unpacked, self.py_func.__qualname__, self._count)
 
     @cached_property
-    def native(self) -> Callable[[int, int, int], int] | None:
-        """The compiled function, or None where numba has to call it."""
+    def native(self) -> Callable[..., int] | None:
+        """The compiled function, or None where numba has to call it. It returns MISFIT, and has done nothing, where the
+        arguments are not of the kinds declared; an integer is to come as the float of the same bits."""
         if not _memory_is_as_expected():
             return None
         address = _address(self.py_func, self._compiled)
-        return None if address is None else _STATUS(address)
+        return None if address is None else _built_in(self.name, address)
+
+    @cached_property
+    def at_once(self) -> Callable[..., int]:
+        """What costs least to call: `native`, if there is one; where it returns MISFIT the entry itself is to be called
+        with the same arguments. Of an entry of arrays and floats."""
+        return self if self.native is None or self._integers else self.native
 
     @cached_property
     def _by_numba(self) -> Callable[..., int]:
@@ -111,17 +126,14 @@ class Entry:
         if native is None:
             return self._called_by_numba(arguments)
         if self._integers:
-            given = [*TYPES, *arguments]
+            given = [*arguments]
             for i in self._integers:
-                (given[i + len(TYPES)],) = _REAL.unpack(_WHOLE.pack(arguments[i]))  # as a float of the same bits
-            handed = tuple(given)
-        else:  # the way of the integrators: every microsecond here is one of a flight of twenty
-            handed = (*TYPES, *arguments)
-        answer = _ANSWER()
-        place = _addressof(answer)
-        if native(place, place + 8, id(handed)):
+                (given[i],) = _REAL.unpack(_WHOLE.pack(arguments[i]))  # as a float of the same bits
+            result = native(*given)
+        else:
+            result = native(*arguments)
+        if result == FAILED:
             raise RuntimeError(f"{self.name} failed")
-        result: int = answer[0]
         return result if result >= 0 else self._converted(arguments)
 
     def _converted(self, arguments: Sequence[Any]) -> int:
@@ -149,6 +161,18 @@ class Entry:
             for number, (one, kind) in pairs
             if kind.is_array and not _fits(one, kind)
         )
+
+
+def _built_in(name: str, address: int) -> Callable[..., int]:
+    """A function of Python's own of machine code that takes its arguments AS_AN_ARRAY."""
+    new = ctypes.PYFUNCTYPE(ctypes.py_object, ctypes.c_void_p, ctypes.py_object, ctypes.c_void_p)
+    definition = _Definition(name.encode(), address, AS_AN_ARRAY, None)
+    _definitions.append(definition)  # which Python reads at each call
+    made: Callable[..., int] = new(("PyCFunction_NewEx", ctypes.pythonapi))(ctypes.addressof(definition), TYPES, None)
+    return made
+
+
+_definitions: list[_Definition] = []
 
 
 def _fits(array: Any, kind: Kind) -> bool:

@@ -21,7 +21,8 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
-FORMAT = 1  # of the files
+FORMAT = 2  # of the files
+PYTHONS_OWN = ("PyEval_SaveThread", "PyEval_RestoreThread", "PyLong_FromLongLong")  # that machine code calls
 KEPT = 6  # objects of one function in a folder: other processors and sources share it; the oldest goes
 
 PACKAGE = Path(__file__).parents[1]
@@ -65,6 +66,8 @@ def _llvm() -> tuple[Any, Any]:
         engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
         nextafter = ctypes.CDLL(None).nextafter  # numba's name for it would be known to numba only
         llvm.add_symbol("numba_nextafter", ctypes.cast(nextafter, ctypes.c_void_p).value)
+        for name in PYTHONS_OWN:
+            llvm.add_symbol(name, ctypes.cast(getattr(ctypes.pythonapi, name), ctypes.c_void_p).value)
     except (OSError, RuntimeError, AttributeError, TypeError) as error:
         raise CannotLoadError(str(error)) from None
     return llvm, engine

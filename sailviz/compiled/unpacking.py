@@ -1,4 +1,4 @@
-"""How an `Entry` gets at its arguments: compiled code reads a tuple, its arrays and its floats where they lie."""
+"""How an `Entry` gets at its arguments: compiled code reads arrays and floats where they lie."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from sailviz.compiled import memory
 if TYPE_CHECKING:
     from sailviz.compiled.entries import Kind
 
-TYPES = 3  # before the arguments: `entries.TYPES`
+TYPES = 3  # in the tuple: `entries.TYPES`
 WORD, REAL, SMALL, BYTE, BIT = ir.IntType(64), ir.DoubleType(), ir.IntType(32), ir.IntType(8), ir.IntType(1)
 
 
 def unpacking(kinds: Sequence[Kind]) -> tuple[Any, Any]:
-    """(fits, arguments) for compiled code, both of the address of a tuple: the types of arrays, of floats and of
-    numpy's floats, which lie alike, then one argument of each kind. Whether they are of these kinds; and what they are,
-    to be asked only if they are."""
+    """(fits, arguments) for compiled code. fits (tuple, place) : whether the arguments at a place are of these kinds;
+    the tuple, by its address too, has the types of arrays, of floats and of numpy's floats, which lie alike.
+    arguments (place) : what they are, to be asked only if they are."""
     wanted = [_type(kind) for kind in kinds]
 
     @intrinsic
-    def fits(typing: Any, place: Any) -> Any:
+    def fits(typing: Any, tuple_: Any, place: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
-            array_type, *float_types = (_item(builder, values[0], n) for n in range(TYPES))
+            array_type, *float_types = (_at(builder, values[0], memory.ITEMS + 8 * n, WORD) for n in range(TYPES))
             good = ir.Constant(BIT, 1)
-            for n, kind in enumerate(kinds, TYPES):
-                item = _item(builder, values[0], n)
+            for n, kind in enumerate(kinds):
+                item = _at(builder, values[1], 8 * n, WORD)
                 if kind.is_array:
                     # a subclass of ndarray may lie otherwise: what is no array is not looked into
                     is_one = builder.icmp_signed("==", _at(builder, item, memory.TYPE, WORD), array_type)
@@ -52,14 +52,14 @@ def unpacking(kinds: Sequence[Kind]) -> tuple[Any, Any]:
                 good = builder.and_(good, fit)
             return good
 
-        return types.boolean(types.int64), generate
+        return types.boolean(types.int64, types.int64), generate
 
     @intrinsic
     def arguments(typing: Any, place: Any) -> Any:
         def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
             found = []
-            for n, (kind, numba_type) in enumerate(zip(kinds, wanted, strict=True), TYPES):
-                item = _item(builder, values[0], n)
+            for n, (kind, numba_type) in enumerate(zip(kinds, wanted, strict=True)):
+                item = _at(builder, values[0], 8 * n, WORD)
                 if kind.is_array:
                     found.append(_array(context, builder, item, kind, numba_type))
                 else:
@@ -82,10 +82,6 @@ def _at(builder: Any, address: Any, offset: int, kind: Any) -> Any:
     """What stands so many bytes behind an address."""
     place = builder.inttoptr(builder.add(address, ir.Constant(WORD, offset)), kind.as_pointer())
     return builder.load(place, typ=kind)
-
-
-def _item(builder: Any, tuple_: Any, n: int) -> Any:
-    return _at(builder, tuple_, memory.ITEMS + 8 * n, WORD)
 
 
 def _fits(builder: Any, array: Any, kind: Kind) -> Any:

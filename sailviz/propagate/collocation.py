@@ -10,6 +10,8 @@ same to the last bit. Source of the method: gauss_legendre.py; what a step does:
 
 from __future__ import annotations
 
+from struct import Struct
+
 import numpy as np
 
 from sailviz.compiled import entry, inlined
@@ -100,9 +102,11 @@ SWEEPS = 9  # place in Integration.counter, after those that all integrators hav
 
 
 # a flight of some tens of microseconds is not to wait for its memory: compiled code clears what has to be clear
-_ROWS, _NO_SIGNS = (NODES + 1 + LENGTH // SIZE, SIZE), np.zeros(0)
+_ROWS, _NO_SIGNS, _NO_EVENTS = (NODES + 1 + LENGTH // SIZE, SIZE), np.zeros(0), (1, 9)
 _BEGUN = np.zeros(10, dtype=np.int64)
 _BEGUN[IN_USE] = 1
+_write_state = Struct(f"{SIZE}d{(CLOCK - Y - 1) * SIZE * 8}xd").pack_into  # into the row Y, and TIME
+_STATE, _integration = Y * SIZE * 8, tuple.__new__
 
 
 def start(t, position, velocity, mass, events=0) -> Integration:
@@ -110,10 +114,9 @@ def start(t, position, velocity, mass, events=0) -> Integration:
     work = np.empty(_ROWS)
     place = position.tolist() if isinstance(position, np.ndarray) else position
     speed = velocity.tolist() if isinstance(velocity, np.ndarray) else velocity
-    work[Y] = (*place, *speed, mass)
-    work[CLOCK, TIME] = t
+    _write_state(work, _STATE, *place, *speed, mass, t)  # type: ignore[arg-type]
     if events == 0:
-        return Integration(work, _BEGUN.copy(), _NO_SIGNS, np.empty((1, 9)))
+        return _integration(Integration, (work, _BEGUN.copy(), _NO_SIGNS, np.empty(_NO_EVENTS)))
     event = np.empty((MOST_EVENTS + TWICE * MOST_SAMPLES * events + 1, 9))
     return Integration(work, _BEGUN.copy(), np.zeros(events), event)
 
@@ -122,11 +125,13 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
     """Integrate until every row of the block is filled, or until something ends the run: as dop853.advance, in every
     argument and status. tolerance : of the position over the distance, and of the velocity over the larger of speed and
     circular speed, in every row."""
-    numbers = t_end, tolerance, largest_step
-    if patience is None and out.flags.c_contiguous:  # without what takes a twentieth of a flight of twenty microseconds
-        status = advance_compiled(*s, model.parameters, breaks, factors, *watch, t_out, out, *numbers, 0.0)
-        if status != PAUSED:
+    if patience is None:  # without what takes a twentieth of a flight of twenty microseconds
+        status = advance_compiled.at_once(
+            *s, model.parameters, breaks, factors, *watch, t_out, out, t_end, tolerance, largest_step, 0.0
+        )
+        if status >= 0 and status != PAUSED:
             return status
+    numbers = t_end, tolerance, largest_step
     return in_pieces(advance_compiled, s, model, (breaks, factors, *watch), t_out, out, numbers, patience)
 
 

@@ -25,6 +25,7 @@ MOST_SWITCHES = 1024
 STATUS, STEPS, SWITCHES = range(3)  # of `Flights.counts`
 TIME, H, DRIFT = range(3)  # of `Flights.numbers`
 WORK = 27  # rows of twelve: 16 stages, 8 coefficients, three states
+SHARP = 1e-3  # of the tolerance: how much of a step may lie behind the switch that it lands on
 SAFETY, SHRINK_MOST, GROW_MOST = 0.9, 0.333, 6.0  # Hairer's values
 
 
@@ -109,27 +110,33 @@ def _interpolant(y, kind, p, eps, h, k, w, new, m):
 
 
 @called
-def _up_to_switch(y, kind, p, eps, h, k, w, new, before, after, span):
-    """The step cut to land just behind the switch, so that it and the one after it are smooth: `_step` again with
-    (error, switching function at its end, its length), from the switching function before and after the whole step."""
-    low, high, g_low, g_high, side = 0.0, h, before, after, 0
+def _up_to_switch(y, kind, p, eps, h, k, w, new, before, after, near):
+    """The step cut to land just behind the switch, at most about so near to it, so that it and the one after it are
+    smooth: `_step` again with (error, switching function at its end, its length), from the switching function before
+    and after the whole step."""
+    low, high = 0.0, h
+    last, g_last, here, g_here = 0.0, before, h, after
+    error, beyond = 0.0, True
     for _ in range(100):
-        if high - low <= 1e-15 * span:
+        if high - low <= near:
             break
-        middle = low + (high - low) * g_low / (g_low - g_high)  # false position (Illinois)
-        edge = 1e-3 * (high - low)
-        middle = min(max(middle, low + edge), high - edge)
-        _, g = _step(y, kind, p, eps, middle, k, w, new)
-        if (g > 0.0) == (before > 0.0):
-            low, g_low = middle, g
-            g_high = 0.5 * g_high if side == 1 else g_high
-            side = 1
+        # a secant, a little too long; halving where it leads nowhere
+        slope = (g_here - g_last) / (here - last)
+        middle = here - g_here / slope + 0.5 * near if slope != 0.0 else low
+        if not low < middle < high:
+            middle = 0.5 * (low + high)
+        last, g_last, here = here, g_here, middle
+        error, g_here = _step(y, kind, p, eps, here, k, w, new)
+        beyond = (g_here > 0.0) != (before > 0.0)
+        if beyond:
+            high = here
+            if abs(g_here * (here - last)) <= near * abs(g_here - g_last):
+                break
         else:
-            high, g_high = middle, g
-            g_low = 0.5 * g_low if side == -1 else g_low
-            side = -1
-    error, after = _step(y, kind, p, eps, high, k, w, new)
-    return error, after, high
+            low = here
+    if here != high or not beyond:
+        error, g_here = _step(y, kind, p, eps, high, k, w, new)
+    return error, g_here, high
 
 
 @called
@@ -167,7 +174,7 @@ def _propagate(start, span, kind, p, eps, tolerance, t_out, out, switches, end, 
         error, after = _step(y, kind, p, eps, sense * h, k, w, new)
         switching = eps == 0.0 and sense > 0.0 and (after > 0.0) != (support > 0.0)
         if switching:
-            error, after, high = _up_to_switch(y, kind, p, eps, h, k, w, new, support, after, span)
+            error, after, high = _up_to_switch(y, kind, p, eps, h, k, w, new, support, after, max(1e-15 * span, SHARP * tolerance * h))
             landing, h = landing and high == h, high
         error /= tolerance
         if not error < 1.0:

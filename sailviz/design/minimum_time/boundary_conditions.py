@@ -14,7 +14,23 @@ import numpy as np
 
 from sailviz.compiled import entry
 from sailviz.design.minimum_time import costates
-from sailviz.design.minimum_time.state_costate import LRX, LRY, LRZ, LVX, LVY, LVZ, OWN, VX, VY, VZ, Sail, X, Y, Z
+from sailviz.design.minimum_time.state_costate import (
+    LRX,
+    LRY,
+    LRZ,
+    LVX,
+    LVY,
+    LVZ,
+    OWN,
+    SIZE,
+    VX,
+    VY,
+    VZ,
+    Sail,
+    X,
+    Y,
+    Z,
+)
 from sailviz.steering.optimal import full_thrust, steer_cool
 
 DIRECTION, SPAN, ANOMALY = slice(0, 3), 3, 4  # places of the unknowns
@@ -31,20 +47,31 @@ def polar(states: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nd
 def cartesian(r, angle, u, v, lam_r, lam_across, lam_u, lam_v):
     """(n, 12) states and costates from their radial and transverse components at an azimuth."""
     c, s = np.cos(angle), np.sin(angle)
-    zero = np.zeros_like(lam_u)
-
-    def turned(a, b):
-        return (c * a - s * b, s * a + c * b, zero)
-
-    rows = [c * r + zero, s * r + zero, zero, *turned(u + zero, v + zero)]
-    rows += [*turned(lam_r, lam_across), *turned(lam_u, lam_v)]
-    return np.stack(rows, axis=1)
+    states = np.zeros((len(lam_u), SIZE))
+    states[:, X], states[:, Y] = c * r, s * r
+    for x, along, across in ((VX, u, v), (LRX, lam_r, lam_across), (LVX, lam_u, lam_v)):
+        states[:, x], states[:, x + 1] = c * along - s * across, s * along + c * across
+    return states
 
 
 def direction(unknowns):
     """Unit vectors (n, 3) of the costates' direction, and the lengths (n,) that the unknowns give it."""
-    size = np.linalg.norm(unknowns[:, DIRECTION], axis=1)
+    size = lengths(unknowns)
     return unknowns[:, DIRECTION] / size[:, None], size
+
+
+def lengths(unknowns):
+    """Those (n,) that the unknowns (n, k) give the direction."""
+    w = unknowns[:, DIRECTION]
+    return np.sqrt((w * w).sum(axis=1))
+
+
+def side_by_side(*columns):
+    """(n, k) from k columns (n,), for a quarter of what np.stack takes."""
+    out = np.empty((len(columns[0]), len(columns)))
+    for i, column in enumerate(columns):
+        out[:, i] = column
+    return out
 
 
 class PolarState(NamedTuple):
@@ -99,7 +126,7 @@ class ToCircle:
         ends = fly(self, unknowns, tolerance, smoothing)
         r, _, u, v = polar(ends)
         slow = np.sqrt(self.radius)
-        return np.stack([r / self.radius - 1, u * slow, v * slow - 1, direction(unknowns)[1] - 1], axis=1)
+        return side_by_side(r / self.radius - 1, u * slow, v * slow - 1, lengths(unknowns) - 1)
 
 
 @dataclass(frozen=True)
@@ -151,8 +178,8 @@ class BetweenEllipses:
         idle = ends[:, LRX] * ends[:, VX] + ends[:, LRY] * ends[:, VY]
         idle -= (ends[:, LVX] * ends[:, X] + ends[:, LVY] * ends[:, Y]) / r**3
         size = np.linalg.norm(ends[:, LRX:LVZ], axis=1)
-        miss = [p / p_wanted - 1, ex - ex_wanted, ey - ey_wanted, idle / size, direction(unknowns)[1] - 1]
-        return np.stack(miss, axis=1)
+        miss = p / p_wanted - 1, ex - ex_wanted, ey - ey_wanted, idle / size, lengths(unknowns) - 1
+        return side_by_side(*miss)
 
 
 def orbits(states: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

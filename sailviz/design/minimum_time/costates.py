@@ -246,8 +246,10 @@ def fly_dense(
     """Flights from starts (n, 12) over spans (n,), seen at times (m,), float64 arrays in C order; so many switches of
     each are kept."""
     n = len(spans)
+    rows = np.empty((n, len(times), SIZE))
+    rows.fill(np.nan)
     flown = Flights(
-        np.full((n, len(times), SIZE), np.nan),
+        rows,
         np.empty((n, SIZE)),
         np.empty((n, switches)),
         np.empty((n, 3), dtype=np.int64),
@@ -310,5 +312,7 @@ def fly_all(
     for first in range(0, len(spans), AT_ONCE):
         part = slice(first, first + AT_ONCE)
         flown = fly_dense(starts[part], spans[part], sail, none, tolerance, smoothing)
-        ends[part] = np.where(flown.counts[:, STATUS, None] == DONE, flown.ends, np.nan)
+        ends[part] = flown.ends
+        if flown.counts[:, STATUS].any():
+            ends[part][flown.counts[:, STATUS] != DONE] = np.nan
     return ends

@@ -19,7 +19,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from sailviz.design.minimum_time.boundary_conditions import ANOMALY, DIRECTION, SPAN, PlanarProblem
+from sailviz.design.minimum_time.boundary_conditions import ANOMALY, DIRECTION, SPAN, PlanarProblem, lengths
 from sailviz.design.minimum_time.costates import STEPS, fly_dense
 from sailviz.design.minimum_time.effort import Effort
 from sailviz.design.minimum_time.finishing import Extremal, alike, distinct, exact, solve
@@ -40,6 +40,7 @@ AGREE, ENOUGH = 3, 12  # starts that led to the same flight; starts finished, of
 PIECE, MOST_STEPS_OF_A_PIECE, DIVE = 2.0, 150, 0.02  # of screened flights: time, steps; radius
 MOST_AT_ONCE = 64  # flights that are screened in one piece of compiled work, which hears no Ctrl-C: 0.1 s
 WORKERS = min(8, os.cpu_count() or 1)
+PARTS = 2  # of the flights that are screened, for each of them: more take longer, fewer wait for each other
 
 
 @dataclass(frozen=True)
@@ -155,7 +156,7 @@ def _screened(problem, unknowns, span, smoothing, effort, progress=None):
         effort.check()
         return screen(starts[places], span, samples, problem.sail, smoothing, ROUGH, problem.nearness)
 
-    parts = max(min(16, len(unknowns) // 8), -(-len(unknowns) // MOST_AT_ONCE))
+    parts = max(min(PARTS * WORKERS, len(unknowns) // 8), -(-len(unknowns) // MOST_AT_ONCE))
     found = in_threads(part, np.array_split(np.arange(len(unknowns)), parts), progress, effort)
     effort.count("costates flown roughly", len(unknowns))
     miss, when = (np.concatenate(column) for column in zip(*found, strict=True))
@@ -183,11 +184,10 @@ def _candidates(problem, n, zooms, span, smoothing, outwards, effort, progress):
     for i in np.argsort(miss, kind="stable").tolist():
         if len(chosen) == KEPT or not (np.isfinite(miss[i]) or not chosen):
             break
-        apart = [np.abs(unknowns[i] - unknowns[j]) for j in chosen]
-        if all(
-            np.linalg.norm(a[DIRECTION]) > least or a[SPAN] > least * unknowns[j][SPAN] or np.any(a[ANOMALY:] > 0.1)
-            for a, j in zip(apart, chosen, strict=True)
-        ):
+        others = unknowns[chosen]
+        apart = np.abs(unknowns[i] - others)
+        far = (lengths(apart) > least) | (apart[:, SPAN] > least * others[:, SPAN])
+        if np.all(far | (apart[:, ANOMALY:] > 0.1).any(axis=1)):
             chosen.append(i)
     return miss[chosen], unknowns[chosen]
 

@@ -43,19 +43,24 @@ def solve(
     damping, growth, weight = 1e-3, 2.0, np.zeros(n)
     f, count, slow = None, 0, 0
     for _ in range(most):
+        if f is not None and np.abs(f).max() <= goal:
+            break
         h = step * np.maximum(1.0, np.abs(x))
-        batch = np.vstack([x, x + np.diag(h)])
+        known = f is not None  # from the step that led here
+        batch = np.empty((n if known else n + 1, n))
+        batch[:] = x
+        batch[-n:].flat[:: n + 1] += h
         values = residuals(batch)
-        count += n + 1
-        if not np.all(np.isfinite(values)):
+        count += len(batch)
+        if not np.isfinite(values).all():
             break
-        f = values[0]
-        jacobian = ((values[1:] - f) / h[:, None]).T
-        size = np.abs(f).max()
-        if size <= goal:
-            break
-        weight = np.maximum(weight, np.linalg.norm(jacobian, axis=0))
-        weight = np.where(weight > 0.0, weight, 1.0)
+        if f is None:
+            f = values[0]
+            if np.abs(f).max() <= goal:
+                break
+        jacobian = ((values[-n:] - f) / h[:, None]).T
+        weight = np.maximum(weight, np.sqrt((jacobian * jacobian).sum(axis=0)))
+        weight[weight == 0.0] = 1.0
         scaled = jacobian / weight
         u, sigma, vt = np.linalg.svd(scaled, full_matrices=False)
         along = u.T @ f
@@ -66,8 +71,9 @@ def solve(
             change = change / max(1.0, shrink)
             trial = residuals((x + change)[None])[0]
             count += 1
-            expected = f @ f - np.sum((f + jacobian @ change) ** 2)
-            gain = (f @ f - trial @ trial) / expected if np.all(np.isfinite(trial)) and expected > 0.0 else -1.0
+            foreseen = f + jacobian @ change
+            expected = f @ f - foreseen @ foreseen
+            gain = (f @ f - trial @ trial) / expected if np.isfinite(trial).all() and expected > 0.0 else -1.0
             if gain > 1e-4:
                 damping *= max(1.0 / 10.0, 1.0 - (2.0 * min(gain, 1.5) - 1.0) ** 3)
                 growth, moved = 2.0, True

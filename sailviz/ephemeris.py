@@ -6,6 +6,7 @@ Frames: heliocentric ecliptic of J2000 for planets, geocentric equatorial of dat
 from __future__ import annotations
 
 from functools import cache
+from math import copysign, cos, radians, remainder, sin, sqrt, tau
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -88,6 +89,51 @@ def planet_elements(name: str, seconds: ArrayLike) -> tuple[np.ndarray, ...]:
     a, e, i, longitude, perihelion, node = values[:, None] + rates[:, None] * np.atleast_1d(seconds) / CENTURY
     angles = np.radians([i, node, perihelion - node, longitude - perihelion])
     return a * AU, e, *angles
+
+
+def planet_motion(name: str, seconds: float) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Position m and velocity m/s of a planet as its mean elements move it, at seconds after J2000, its velocity the
+    derivative of its position. Of one moment, for searches that ask thousands of times: in 15 us."""
+    values, rates = _MEAN[name]
+    past = seconds / CENTURY
+    a, e, i, longitude, perihelion, node = (value + rate * past for value, rate in zip(values, rates, strict=True))
+    da, de, di, dlongitude, dperihelion, dnode = rates
+    return ellipse_motion(
+        (a * AU, e, *map(radians, (i, node, perihelion - node, longitude - perihelion))),
+        (da * AU, de, *map(radians, (di, dnode, dperihelion - dnode, dlongitude - dperihelion))),
+        CENTURY,
+    )
+
+
+def ellipse_motion(
+    elements: tuple[float, ...], changes: tuple[float, ...], unit: float
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    """Position m and velocity m/s where elements - a m, e, i, node, argument, mean anomaly rad - change so much in a
+    unit of time, s."""
+    a, e, i, node, w, mean = elements
+    da, de, di, dnode, dw, dmean = changes
+    mean = remainder(mean, tau)
+    anomaly = mean + 0.85 * copysign(e, mean)  # as in `eccentric_anomaly`
+    for _ in range(60):
+        s, c = sin(anomaly), cos(anomaly)
+        step = (anomaly - e * s - mean) / (1 - e * c)
+        anomaly -= step
+        if abs(step) < 1e-14:
+            break
+    s, c = sin(anomaly), cos(anomaly)
+    turning = (dmean + de * s) / (1 - e * c)
+    root = sqrt(1 - e * e)
+    x, dx = a * (c - e), da * (c - e) - a * (s * turning + de)
+    y, dy = a * root * s, (da * root - a * e * de / root) * s + a * root * c * turning
+    # x along the node, y ahead of it; each change with what the turn of the axes adds
+    sw, cw, si, ci, sn, cn = sin(w), cos(w), sin(i), cos(i), sin(node), cos(node)
+    x, y, dx, dy = x * cw - y * sw, x * sw + y * cw, dx * cw - dy * sw, dx * sw + dy * cw
+    dx, dy = dx - dw * y, dy + dw * x
+    level, upright = y * ci, y * si
+    dlevel, dupright = dy * ci - di * upright, dy * si + di * level
+    place = x * cn - level * sn, x * sn + level * cn, upright
+    dx, dlevel = dx - dnode * level, dlevel + dnode * x
+    return place, ((dx * cn - dlevel * sn) / unit, (dx * sn + dlevel * cn) / unit, dupright / unit)
 
 
 def eccentric_anomaly(mean: np.ndarray, e: np.ndarray | float) -> np.ndarray:

@@ -174,7 +174,8 @@ def _propagate(start, span, kind, p, eps, tolerance, t_out, out, switches, end, 
         error, after = _step(y, kind, p, eps, sense * h, k, w, new)
         switching = eps == 0.0 and sense > 0.0 and (after > 0.0) != (support > 0.0)
         if switching:
-            error, after, high = _up_to_switch(y, kind, p, eps, h, k, w, new, support, after, max(1e-15 * span, SHARP * tolerance * h))
+            near = max(1e-15 * span, SHARP * tolerance * h)
+            error, after, high = _up_to_switch(y, kind, p, eps, h, k, w, new, support, after, near)
             landing, h = landing and high == h, high
         error /= tolerance
         if not error < 1.0:

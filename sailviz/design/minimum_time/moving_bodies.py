@@ -6,7 +6,9 @@ pull in between is left out, 1e-4 to 1e-3 au in some years, much more after a cl
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -14,7 +16,7 @@ import numpy.typing as npt
 
 from sailviz import ephemeris
 from sailviz.constants import DAY, MU_SUN
-from sailviz.elements import Elements, state
+from sailviz.elements import Elements
 from sailviz.sky.places import tdb_ahead
 
 SPREAD = 3000.0  # s between positions that are differenced: rounding 1e-12, neglected terms 1e-14 of the speed
@@ -66,21 +68,37 @@ class SmallBodyOrbit:
             )
 
     def state(self, epoch: np.datetime64, time: npt.ArrayLike) -> States:
-        now = ephemeris.seconds_since_j2000(epoch) + tdb_ahead(epoch) + np.atleast_1d(np.asarray(time, dtype=float))
+        passed = _begin(epoch) + tdb_ahead(epoch) - (self.date - J2000_JD) * DAY
         e = self.elements
-        rate = np.sqrt(MU_SUN / e.semi_major_axis**3)
-        mean = self.mean_anomaly + rate * (now - (self.date - J2000_JD) * DAY)
-        anomaly = ephemeris.true_anomaly(mean, e.eccentricity)
-        return state(e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument, anomaly, MU_SUN)
+        shape = e.semi_major_axis, e.eccentricity, e.inclination, e.raan, e.argument
+        rate = float(np.sqrt(MU_SUN / e.semi_major_axis**3))
+        changes = (0.0, 0.0, 0.0, 0.0, 0.0, rate)
+        return _states(
+            ephemeris.ellipse_motion((*shape, self.mean_anomaly + rate * (passed + t)), changes, 1.0)
+            for t in np.ravel(time).tolist()
+        )
+
+
+@lru_cache(maxsize=16)
+def _begin(epoch: np.datetime64) -> float:
+    return ephemeris.seconds_since_j2000(epoch)
+
+
+def _states(motions: Iterable[tuple[tuple[float, ...], tuple[float, ...]]]) -> States:
+    found = np.array(list(motions)).reshape(-1, 2, 3)
+    return found[:, 0], found[:, 1]
 
 
 def planet_state(name: str, epoch: np.datetime64, time: npt.ArrayLike, source: str = "mean-elements") -> States:
     """Heliocentric position m and velocity m/s, each (n, 3), ecliptic of J2000, at times (n,) s after the epoch.
 
-    The velocity is the difference quotient of fourth order of `ephemeris.planet_position`, so that both belong
-    together.
+    The velocity is the derivative of `ephemeris.planet_position`, of DE421 its difference quotient of fourth order, so
+    that both belong together.
     """
     time = np.atleast_1d(np.asarray(time, dtype=float))
+    if source == "mean-elements":
+        begin = _begin(epoch)
+        return _states(ephemeris.planet_motion(name, begin + t) for t in time.tolist())
     around = (time + SPREAD * np.arange(-2.0, 3.0)[:, None]).ravel()
     places = ephemeris.planet_position(name, epoch, around, source).reshape(5, len(time), 3)
     far_before, before, here, after, far_after = places

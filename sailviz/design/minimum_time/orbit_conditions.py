@@ -15,9 +15,9 @@ import numpy as np
 
 from sailviz.design.minimum_time import costates
 from sailviz.design.minimum_time.effort import Effort
-from sailviz.design.minimum_time.kepler_orbit import KeplerOrbit, turned
-from sailviz.design.minimum_time.state_costate import COSTATES, POSITION, VELOCITY, Sail, kepler_rates
-from sailviz.design.minimum_time.unknowns import LOOSE, NEAR, SHARPER, Unknowns, columns, off_unit_length, solved
+from sailviz.design.minimum_time.kepler_orbit import KeplerOrbit, cross, length, turned
+from sailviz.design.minimum_time.state_costate import COSTATES, POSITION, SIZE, VELOCITY, Sail, kepler_rates
+from sailviz.design.minimum_time.unknowns import LOOSE, NEAR, SHARPER, Unknowns, columns, solved
 
 SMALLEST_BEND = 0.01  # of the way from a coplanar circle to the orbit's true shape
 
@@ -52,19 +52,19 @@ class OrbitProblem:
         """(m, 8): what m rows of packed unknowns leave of the target's orbit (6), of the condition for a free arrival,
         and of |lam| = 1."""
         begin, spans = columns(batch)
-        starts = np.hstack([*self.origin.state(np.full(len(batch), departure)), begin])
+        starts = np.empty((len(batch), SIZE))
+        starts[:, POSITION], starts[:, VELOCITY] = self.origin.state(departure)
+        starts[:, COSTATES] = begin
         ends = costates.fly_all(starts, spans, self.sail, tolerance=tolerance, smoothing=smoothing)
         r, v, lam = ends[:, POSITION], ends[:, VELOCITY], ends[:, COSTATES]
-        h = np.cross(r, v)
-        e = np.cross(v, h) - r / np.linalg.norm(r, axis=1)[:, None]
         rates = kepler_rates(ends)
-        along = np.sum(rates * lam, 1) / (np.linalg.norm(lam, axis=1) * np.linalg.norm(rates, axis=1))
-        return np.hstack([
-            (h - self.target.momentum) / np.sqrt(self.target.p),
-            e - self.target.e * self.target.P,
-            along[:, None],
-            off_unit_length(begin),
-        ])  # fmt: skip
+        h = cross(r, v)
+        out = np.empty((len(batch), 8))
+        out[:, 0:3] = h / np.sqrt(self.target.p) - self.target.normal
+        out[:, 3:6] = cross(v, h) - r / length(r)[:, None] - self.target.e * self.target.P
+        out[:, 6] = (rates * lam).sum(axis=1) / (length(lam) * length(rates))
+        out[:, 7] = (begin * begin).sum(axis=1) - 1.0
+        return out
 
     def search(self, unknowns: Unknowns, smoothing: float = 0.0, tolerance: float = LOOSE) -> tuple[Unknowns, float]:
         """The solution near some unknowns at their departure anomaly, and its residual."""

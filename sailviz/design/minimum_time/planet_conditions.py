@@ -32,6 +32,7 @@ from sailviz.design.minimum_time.orbits import target_radius
 from sailviz.design.minimum_time.state_costate import (
     COSTATES,
     POSITION,
+    SIZE,
     SPEED_UNIT,
     STATE,
     TIME_UNIT,
@@ -47,8 +48,8 @@ from sailviz.design.minimum_time.unknowns import (
     Unknowns,
     columns,
     distinct,
-    off_unit_length,
     solved,
+    with_unit_length,
 )
 from sailviz.elements import elements
 
@@ -120,10 +121,14 @@ class Meeting:
 
         def residuals(batch: np.ndarray) -> np.ndarray:
             begin, spans = columns(batch)
-            starts = np.hstack([np.broadcast_to(start, (len(batch), len(start))), begin])
+            starts = np.empty((len(batch), SIZE))
+            starts[:, STATE], starts[:, COSTATES] = start, begin
             ends = costates.fly_all(starts, spans, self.sail, tolerance=tolerance, smoothing=smoothing)
-            there = self.state(self.target, unknowns.departure + shift + spans * TIME_UNIT)
-            return np.hstack([self.misses(ends, there), off_unit_length(begin)])
+            there = np.empty((len(batch), len(start)))
+            there[:] = self.state(self.target, unknowns.departure + shift + spans[0] * TIME_UNIT)
+            for i in np.flatnonzero(spans != spans[0]).tolist():  # a derivative has one of them
+                there[i] = self.state(self.target, unknowns.departure + shift + spans[i] * TIME_UNIT)
+            return with_unit_length(self.misses(ends, there), begin)
 
         return solved(self.effort.watched(residuals), unknowns, tolerance, most)
 

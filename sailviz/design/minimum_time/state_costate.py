@@ -145,8 +145,11 @@ def scales(y):
 
 def kepler_rates(y: np.ndarray) -> np.ndarray:
     """(n, 6) v and -r / r^3 of states y (n, >= 6): the motion along the osculating orbit."""
-    r = np.linalg.norm(y[:, POSITION], axis=1)[:, None]
-    return np.hstack([y[:, VELOCITY], -y[:, POSITION] / r**3])
+    r = y[:, POSITION]
+    square = (r * r).sum(axis=1)[:, None]
+    rates = np.empty((len(y), 6))
+    rates[:, POSITION], rates[:, VELOCITY] = y[:, VELOCITY], -r / (square * np.sqrt(square))
+    return rates
 
 
 def revolutions(rows: np.ndarray) -> float:

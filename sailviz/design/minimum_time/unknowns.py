@@ -53,9 +53,11 @@ def columns(batch: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return batch[:, _COSTATES], np.maximum(batch[:, _SPAN], SHORTEST)
 
 
-def off_unit_length(costates: np.ndarray) -> np.ndarray:
-    """(m, 1) |lam|^2 - 1 of costates (m, 6)."""
-    return (np.sum(costates**2, 1) - 1)[:, None]
+def with_unit_length(misses: np.ndarray, costates: np.ndarray) -> np.ndarray:
+    """(m, k + 1): misses (m, k) and |lam|^2 - 1 of costates (m, 6)."""
+    both = np.empty((len(misses), misses.shape[1] + 1))
+    both[:, :-1], both[:, -1] = misses, (costates * costates).sum(axis=1) - 1.0
+    return both
 
 
 def solved(

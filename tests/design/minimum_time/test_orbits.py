@@ -121,6 +121,19 @@ def test_costates_are_what_an_earlier_start_would_save():
     assert (sides[1].time - sides[0].time) / TIME_UNIT == pytest.approx(expected, rel=1e-4)
 
 
+@pytest.mark.parametrize("planet", ephemeris.PLANETS)
+def test_velocity_of_a_planet_is_how_fast_its_place_changes(planet):
+    time, epoch, h = np.array([0.0, 1e7, 3e8, -7e8]), np.datetime64("2030-01-01"), 6000.0
+    r, v = planet_state(planet, epoch, time)
+    assert r == pytest.approx(ephemeris.planet_position(planet, epoch, time), abs=1e-12 * np.abs(r).max())
+    near, far = (
+        (ephemeris.planet_position(planet, epoch, time + d) - ephemeris.planet_position(planet, epoch, time - d)) / d
+        for d in (h, 2 * h)
+    )
+    # times rounded to 1e-7 s over a difference's step: 3e-11
+    assert v == pytest.approx((4 * near - far) / 6, abs=3e-10 * np.abs(v).max())
+
+
 def test_velocity_of_a_planet_is_that_of_its_mean_orbit():
     time = np.array([0.0, 1e7])
     epoch = np.datetime64("2030-01-01")

@@ -25,6 +25,21 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # begun in the background
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
+# Modules of few tests that take or wait long: begun early, lest one process ends with them while others have nothing
+LONG = (
+    "tests/simulation/test_interrupts.py",
+    "tests/cli/test_endings.py",
+    "tests/simulation/test_accuracy.py",
+    "tests/compiled/test_machine_code.py",
+    "tests/recording/views/test_viewers.py",
+    "tests/cli/test_time_limit.py",
+    "tests/compiled/test_waiting.py",
+    "tests/simulation/test_no_progress.py",
+    "tests/sweeps/test_loop.py",
+    "tests/reports/test_reports.py",
+    "tests/design/minimum_time/test_to_ends.py",
+    "tests/design/asymptotic/test_solution.py",
+)
 EXTRAS = {"deorbit/drag-sail": "sgp4"}  # shipped scene -> what has to be installed to fly it
 
 
@@ -37,6 +52,13 @@ def pytest_xdist_make_scheduler(config, log):
     class Together(LoadScopeScheduling):
         def _split_scope(self, nodeid):
             return belongs_to(nodeid)
+
+        def schedule(self):
+            first = self.collection is None
+            super().schedule()
+            for module in reversed(LONG) if first else ():
+                if module in self.workqueue:
+                    self.workqueue.move_to_end(module, last=False)
 
     return Together(config, log)
 

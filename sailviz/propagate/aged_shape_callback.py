@@ -18,7 +18,8 @@ from sailviz.compiled import STATE, called, inlined
 from sailviz.compiled.rebound import rebound
 from sailviz.constants import AU
 from sailviz.propagate import body_motion
-from sailviz.propagate.body_motion import AGED, AVERAGED, SIZE, SLIDE, WORK, Q, Y, body_of, cross, spin_axis
+from sailviz.propagate.body_control import CHANGE, DEVICE, FRONT_OF_VANE, OFF, VANE
+from sailviz.propagate.body_motion import AGED, AVERAGED, HEAD, SIZE, SLIDE, WORK, Q, Y, body_of, cross, spin_axis
 from sailviz.propagate.callbacks import Callback, callback
 from sailviz.propagate.film_callback import light_at as sunlight_at
 from sailviz.propagate.parameters import PARAMETERS, array_at, record_at
@@ -44,6 +45,24 @@ def set_age(dose, p, mine):
         _, gained = worn(dose, film.factor, film.rate)
         _, _, b3 = coefficients(0.0, 0.0, film.Bb, film.Bf, film.eb, gained * film.ef)
         mine[at + 3] = b3 - mine[fresh + 3]
+
+
+@called
+def age_actuators(first, vanes, devices, dose, p, tables, mine):
+    """Vanes, whose two sides are the film's, and devices of switched reflectivity, which are the film while they are
+    on, at its dose; after `set_age`. first : where their rows begin."""
+    b1, b2, b3 = aged_coefficients(dose, p.film)
+    groups = int(mine[TABLE + GROUPS])
+    fresh = TABLE + (groups + 1) * shaped_sail.stride(mine, TABLE) + FRESH
+    for i in range(vanes):
+        f = first + VANE * i + FRONT_OF_VANE
+        tables[f], tables[f + 1], tables[f + 2] = b1, b2, b3
+        if groups > 3:
+            tables[f + 5] = mine[fresh + 3] + mine[TABLE + CHANGES + 3]
+    for i in range(devices):
+        row = first + VANE * vanes + DEVICE * i
+        d, off = row + CHANGE, row + OFF
+        tables[d], tables[d + 1], tables[d + 2] = b1 - tables[off], b2 - tables[off + 1], b3 - tables[off + 2]
 
 
 @inlined
@@ -109,6 +128,7 @@ def _on_body(time, state, parameters, own, number, out):
     bx, by, bz = ux, uy, uz
     if strength != 0.0:
         set_age(y[6], p, mine)
+        age_actuators(p.places.body + HEAD, int(b.vanes), int(b.devices), y[6], p, tables, mine)
     if b.motion == AVERAGED:
         zx, zy, zz = spin_axis(turned)
         if strength != 0.0:

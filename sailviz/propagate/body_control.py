@@ -65,7 +65,8 @@ class Vane(NamedTuple):
 
 
 class ReflectivityDevice(NamedTuple):
-    """A patch in the plane of the film, whose front is the film's while it is on."""
+    """A patch in the plane of the film, whose front is the film's while it is on, and another, `off`, while it is not;
+    what is off stays as it is where the film ages."""
 
     x: float  # m
     y: float
@@ -75,10 +76,13 @@ class ReflectivityDevice(NamedTuple):
     d2: float
     d3: float
     share: float = 1.0  # on, of the moment: written here by the controller
+    off1: float = 0.0  # coefficients off
+    off2: float = 0.0
+    off3: float = 0.0
 
 
 AREA, LIMIT, REST, FRONT_OF_VANE, ANGLE, VANE = 3, 4, 5, 6, 12, 13
-CHANGE, SHARE, DEVICE = 4, 7, 8
+CHANGE, SHARE, OFF, DEVICE = 4, 7, 8, 11
 
 
 @called

@@ -139,8 +139,9 @@ def _with_actuators(scene: Scene, said: section.ControlledAttitude, body: Body) 
                 (f1, f2, f3), (g1, g2, g3) = film.front, film.back
                 vanes.append(tuple(Vane(x, y, z, one.area, one.limit, one.rest, f1, f2, f3, g1, g2, g3)))
             else:
-                d1, d2, d3 = np.subtract(film.front, side_of(_film(one.off))).tolist()
-                patches.append(tuple(ReflectivityDevice(x, y, z, one.area, d1, d2, d3)))
+                off = side_of(_film(one.off))
+                d1, d2, d3 = np.subtract(film.front, off).tolist()
+                patches.append(tuple(ReflectivityDevice(x, y, z, one.area, d1, d2, d3, 1.0, *off)))
     names = [f"vane_{i + 1}_angle_rad" for i in range(len(vanes))]
     names += [f"device_{i + 1}_on" for i in range(len(patches))]
     body = body._replace(vanes=float(len(vanes)), devices=float(len(patches)))

@@ -42,10 +42,6 @@ def _ageing(scene: Scene) -> Faults:
     where, found = "device.ageing", list[tuple[str, str]]()
     if not has_optics(device):
         found.append((where, NEEDS_OPTICS))
-    turned = [scene.attitude, *(phase.attitude for phase in scene.phase)]
-    kinds = {one.kind for each in turned for one in getattr(each, "actuators", None) or []}
-    for kind in sorted(kinds & {"vane", "reflectivity"}):
-        found.append((where, f'the film of an actuator of kind "{kind}" stays as it is: turn the craft by others'))
     if device.control is not None:
         found.append(
             (where, "a film that darkens when it is told to ages in a way that is not known: control or ageing")

@@ -13,7 +13,7 @@ from sailviz.elements import elements
 from sailviz.run.arrays import Attitude, Event, Run, Thrust
 from sailviz.run.quantities import arc, circular_mean, unwrapped
 from sailviz.scene.loading import Scene
-from sailviz.scene.quantities import of_ensemble, spellings
+from sailviz.scene.quantities import of_attitude_ensemble, of_ensemble, spellings
 from sailviz.scene.sections import STATISTICS_OF_ROWS, Expectation
 
 
@@ -110,6 +110,9 @@ class Reckoning:
         return self.item.at if self.item.at in STATISTICS_OF_ROWS and self.item.at is not None else "event"
 
     def _look_at_ensemble(self, run: Run) -> None:
+        for turned in run.setting.attitude_ensembles:
+            if turned.name == self.item.ensemble:
+                self.found = of_attitude_ensemble(turned, self.quantity, self.item)
         for ensemble in run.setting.ensembles:
             if ensemble.name == self.item.ensemble and self.item.statistic is not None:
                 self.found = of_ensemble(ensemble, self.quantity, self.item.statistic)

@@ -118,7 +118,7 @@ def check_runs(runs: Mapping[str, Run]) -> None:
     faults += [
         f"{name} is an ensemble of flights: only single flights are compared"
         for name, run in runs.items()
-        if run.setting.ensembles
+        if run.setting.ensembles or run.setting.attitude_ensembles
     ]
     faults += [
         f"the {run.setting.body.name} of {name} pulls with {run.setting.body.mu:.9g} m³/s², that of {first[0]} with "

@@ -52,7 +52,7 @@ FILLED = "/filled"
 
 def archetype(entity: str) -> str:
     """Name of the archetype of an entity: /state -> sailviz.State, /ensemble/calm -> sailviz.Ensemble."""
-    return "sailviz." + entity.strip("/").split("/")[0].capitalize()
+    return "sailviz." + "".join(part.capitalize() for part in entity.strip("/").split("/")[0].split("_"))
 
 
 def flight_path(name: str) -> str:

@@ -133,7 +133,7 @@ def _on_other_rows(entities: Sequence[str]) -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     for name in entities:
         flight = flight_of(name)
-        if name.startswith("/ensemble/") or name == f"{flight}/events":
+        if name.startswith(("/ensemble/", "/attitude_ensemble/")) or name == f"{flight}/events":
             found[name] = [name]
         elif flight:
             found.setdefault(flight, []).append(name)

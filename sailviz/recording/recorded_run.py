@@ -140,7 +140,7 @@ def drawn_run_of(recording: Recording) -> Run:
         raise RecordingError(
             f"{recording.label} holds {len(recording.flights)} flights already: only recordings of one are put together"
         )
-    if any(name.startswith("/ensemble/") for name in recording.entities):
+    if any(name.startswith(("/ensemble/", "/attitude_ensemble/")) for name in recording.entities):
         raise RecordingError(f"{recording.label} holds an ensemble of flights: only single flights are compared")
     length, _ = unit_of(run.setting, float(np.linalg.norm(run.position[0])))
     return replace(

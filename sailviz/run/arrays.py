@@ -144,6 +144,38 @@ class EnsembleStatistics:
 
 
 @dataclass(frozen=True)
+class AttitudeEnsemble:
+    """Many flights of a craft that turns, each with what it drew. n times, k flights kept whole; SI, radians.
+
+    A quantity's name carries its unit, e.g. "body_rate_rad_s". What a flight is not there for any more is NaN.
+    """
+
+    name: str
+    words: str  # what was drawn, e.g. "attitude.pitch_deg normal(20, 3)"
+    flights: int
+    seed: int
+    step: np.ndarray  # (n,) rows of the run that stand at the same times
+    time: np.ndarray  # (n,) s
+    levels: np.ndarray  # (m,) per cent
+    percentiles: dict[str, np.ndarray]  # quantity -> (m, n)
+    mean: dict[str, np.ndarray]  # quantity -> (n,)
+    deviation: dict[str, np.ndarray]  # quantity -> (n,), of the flights
+    nominal: dict[str, np.ndarray]  # quantity -> (n,) of the scene's own flight
+    kept_axis: np.ndarray  # (k, n, 3) z of the body, inertial
+    kept_position: np.ndarray  # (k, n, 3) m
+    drawn: dict[str, np.ndarray]  # key of the scene -> (flights,) in the unit of the key
+    met: dict[str, np.ndarray]  # event -> (flights,) s, when each flight met it first; NaN where it did not
+    # what [[expect]] asks: "body_rate@max" -> (flights + 1,), the last one the scene's own flight
+    values: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def share(self, event: str) -> np.ndarray:
+        """Share (n,) of the flights that have met an event up to each time."""
+        times = self.met.get(event, np.full(self.flights, np.nan))
+        found: np.ndarray = np.mean(times[:, None] <= self.time, axis=0)
+        return found
+
+
+@dataclass(frozen=True)
 class Setting:
     """Everything about a run that is not a column of numbers."""
 
@@ -168,6 +200,7 @@ class Setting:
     plots: tuple[str, ...] = ()  # words of the curves that shall be in front
     shells: tuple[Shell, ...] = ()
     ensembles: tuple[EnsembleStatistics, ...] = ()
+    attitude_ensembles: tuple[AttitudeEnsemble, ...] = ()
     gaps: tuple[tuple[float, float], ...] = ()  # s, (start, end) of spans without data
     phases: tuple[Phase, ...] = ()  # of a flight in phases, in their order
     magnetopause: np.ndarray | None = (

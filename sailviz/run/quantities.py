@@ -179,4 +179,5 @@ VALUES: dict[str, Value] = {
     "light_torque": _torque("light_torque"),
     "air_torque": _torque("air_torque"),
     "control_torque": _torque("control_torque"),
+    "share": _acted("share"),  # of an ensemble: of the flights that meet an event
 }

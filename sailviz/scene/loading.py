@@ -50,13 +50,14 @@ UNSAID = {  # by table, keys without which scenes were complete before they were
     "environment": ("gravity_of", "shadow_of", "magnetosphere", "space_weather"),
     "device": ("edge_area", "name", "steering", "shape", "back", "roll", "ageing", "hottest", "wheel"),
     "device.shape": ("air",),
-    "expect": ("device",),
+    "expect": ("device", "percent"),
+    "ensemble": ("draw",),
     "phase": ("attitude",),
     "steering": ("in_shadow", "minimum_perigee", "margin", "arcs", "touches", "hottest"),
     "target": ("mean_anomaly", "elements_date"),
 }
 
-LISTS = ("expect", "phase")  # of them, those of which there may be several
+LISTS = ("expect", "ensemble", "phase")  # of them, those of which there may be several
 
 
 class Scene(Section):

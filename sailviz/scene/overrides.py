@@ -19,6 +19,9 @@ def overridden(raw: Mapping[str, Any], values: Mapping[str, Any], name: str) -> 
         table: Any = result
         for part in path:
             table = _inner(table, part)
+        if isinstance(table, list) and _numbered(table, last):
+            table[int(last)] = _copy(value)
+            continue
         if not isinstance(table, dict):
             raise SceneError([Fault(key, "no such place in the scene", given=key)], name)
         for sibling in same_quantity(last, table):
@@ -35,12 +38,17 @@ def place_of(key: str) -> str:
 def _inner(table: Any, part: str) -> Any:
     """The table or list under a name or a number, made if it is not there; None where there can be none."""
     if isinstance(table, list):
-        return table[int(part)] if part.isdecimal() and len(part) < 9 and int(part) < len(table) else None
+        return table[int(part)] if _numbered(table, part) else None
     if not isinstance(table, dict):
         return None
     if not isinstance(table.get(part), (dict, list)):
         table[part] = {}
     return table[part]
+
+
+def _numbered(items: list[Any], part: str) -> bool:
+    """Whether a part of a key is the number of an item, 0 the first."""
+    return part.isdecimal() and len(part) < 9 and int(part) < len(items)
 
 
 def _copy(value: Any) -> Any:

@@ -77,13 +77,21 @@ class ManyFlights(Section):
     solar_wind: Winds | None = None
 
 
+class Drawn(Section):
+    """A key of the scene, with its unit, that each flight of an ensemble draws for itself: "normal(20, 3)"."""
+
+    key: Annotated[str, Field(min_length=1)]
+    distribution: str
+
+
 class Ensemble(ManyFlights):
-    """Flights through winds (or sunshine) of their own. seed : that of the wind if absent; keep : flights drawn
-    whole."""
+    """Flights through winds (or sunshine) of their own; of a craft that turns with what each draws. seed : that of the
+    wind if absent; keep : flights drawn whole."""
 
     flights: Annotated[int, Field(ge=2, le=1_000_000)] = 200
     seed: Annotated[int, Field(ge=0)] | None = None
     keep: Annotated[int, Field(ge=1, le=200)] = 60
+    draw: Annotated[list[Drawn], Field(min_length=1)] | None = None
 
 
 class Chaos(ManyFlights):
@@ -163,12 +171,13 @@ STATISTICS_OF_ROWS: tuple[str, ...] = get_args(OfRows)
 class Expectation(Section):
     """A quantity that the run must reach: value and tolerance in the quantity's own unit. device : of a list, whose
     share of the thrust it is. ensemble : of its flights instead, a statistic of their ends: the mean, the mean miss of
-    the nominal flight's end, or the standard deviation."""
+    the nominal flight's end, the standard deviation, or of a craft that turns the percentile at `percent`."""
 
     quantity: str
     device: str | None = None
     ensemble: str | None = None
-    statistic: Literal["mean", "miss", "deviation"] | None = None
+    statistic: Literal["mean", "miss", "deviation", "percentile"] | None = None
+    percent: Annotated[float, Field(ge=0, le=100)] | None = None
     closed_form: Literal["kepler", "reduced-kepler", "displaced-orbit", "logarithmic-spiral"] | None = None
     at: OfRows | str | None = None
     at_time: Time | None = None
@@ -187,6 +196,8 @@ class Expectation(Section):
         one_of(self, "at", "at_time")
         if (self.ensemble is None) != (self.statistic is None):
             raise wrong("ensemble and statistic belong together")
+        if (self.statistic == "percentile") != (self.percent is not None):
+            raise wrong('statistic = "percentile" and percent belong together')
         one_of(self, "within", "within_percent")
         if self.value == 0 and self.within_percent is not None:
             raise wrong("of a value of 0 no percentage can be taken: give within")

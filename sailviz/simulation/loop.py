@@ -9,11 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from sailviz.errors import TimeLimitError
 from sailviz.propagate import stepping
 from sailviz.propagate.events import STOP
 from sailviz.propagate.patience import Patience
-from sailviz.run.arrays import EnsembleStatistics, Run, Setting, join
-from sailviz.scene.loading import SceneSource, load_scene
+from sailviz.run.arrays import AttitudeEnsemble, EnsembleStatistics, Run, Setting, join
+from sailviz.scene.loading import Scene, SceneSource, load_scene
 from sailviz.simulation.integration import begun
 from sailviz.simulation.metadata import bodies, planets_in_view, setting_of
 from sailviz.simulation.output_times import OutputTimes
@@ -22,6 +23,7 @@ from sailviz.simulation.plan import Plan, plan
 from sailviz.simulation.rows import ending, fill, first_end, observed, raise_failure, with_known_mass, with_last_state
 
 BLOCK_ROWS = 16_384  # a recording takes this many at once
+ENSEMBLES = 0.9  # of the progress, of flights that are flown one by one beside the scene's own
 
 
 def simulate(
@@ -74,7 +76,11 @@ def _blocks(
 ) -> Iterator[Run]:
     begins = [phase.start for phase in p.phases]
     output = OutputTimes(p.scene.propagation, also=begins)
-    ensembles = _ensembles(p, output) if drawn or any(item.ensemble for item in p.scene.expect) else ()
+    asked = drawn or any(item.ensemble for item in p.scene.expect)
+    ensembles = _ensembles(p, output) if asked and p.turning is None else ()
+    turning = _turning(p, output, progress, patience, time_limit) if asked and p.turning is not None else ()
+    if turning:
+        progress = _second(progress)
     spreads = _spreads(p)
     if spreads and output.rows > block_rows:  # a flight without rows tells where it ends: they can be streamed then
         state = begun(p)
@@ -101,7 +107,8 @@ def _blocks(
         if len(filled.times):
             if setting is None:
                 planets = planets_in_view(p) if drawn else {}
-                setting = replace(setting_of(p, planets, output.rows, ensembles, drawn), duration=output.end)
+                setting = setting_of(p, planets, output.rows, ensembles, drawn)
+                setting = replace(setting, duration=output.end, attitude_ensembles=turning)
             block = observed(p, setting, filled.times, filled.states, first, off_time)
             yield replace(
                 block,
@@ -143,3 +150,29 @@ def _ensembles(p: Plan, output: OutputTimes) -> tuple[EnsembleStatistics, ...]:
     from sailviz.simulation.ensembles import ensembles_of
 
     return ensembles_of(p, output)
+
+
+def _turning(
+    p: Plan, output: OutputTimes, progress: Callable[[float], None], patience: Patience, time_limit: float
+) -> tuple[AttitudeEnsemble, ...]:
+    """The same of a craft that turns, each flight by itself; together they have the time of the run."""
+    if not p.scene.ensemble:
+        return ()
+    from sailviz.simulation.turning_ensembles import turning_ensembles
+
+    def fly(scene: Scene) -> Iterator[Run]:
+        left = patience.until - perf_counter()
+        if left <= 0.0:
+            raise TimeLimitError(f"the time limit of {time_limit:g} s is over: the flights of an ensemble were flown")
+        try:
+            yield from simulate_blocks(scene, drawn=False, time_limit=left)
+        except TimeLimitError:
+            words = f"the time limit of {time_limit:g} s is over: the flights of an ensemble were flown"
+            raise TimeLimitError(words) from None
+
+    return turning_ensembles(p.scene, output, fly, lambda share: progress(ENSEMBLES * share), bool(p.keep))
+
+
+def _second(progress: Callable[[float], None]) -> Callable[[float], None]:
+    """Progress of what comes after ensembles."""
+    return lambda share: progress(ENSEMBLES + (1.0 - ENSEMBLES) * share)

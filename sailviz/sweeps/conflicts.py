@@ -9,9 +9,10 @@ from typing import Any
 import numpy as np
 
 from sailviz.errors import Fault, SceneError
+from sailviz.scene.draws import Draw
 from sailviz.scene.loading import Scene
 from sailviz.scene.overrides import same_quantity
-from sailviz.sweeps.distributions import Axis, Draw
+from sailviz.sweeps.distributions import Axis
 
 PROBED = 300  # listed values of a key that are tried before the first flight
 

@@ -18,11 +18,12 @@ import numpy as np
 
 import sailviz
 from sailviz.errors import Fault, SceneError
+from sailviz.scene.draws import Draw, flight_seed
 from sailviz.scene.faults import locate
 from sailviz.scene.loading import Scene, SceneSource, build_scene, load_scene
 from sailviz.scene.sections import Expectation
 from sailviz.sweeps.conflicts import disagreements, value_faults
-from sailviz.sweeps.distributions import Axis, Draw, flight_seed, too_many, varied
+from sailviz.sweeps.distributions import Axis, too_many, varied
 from sailviz.sweeps.report import column, numbered, report_faults, reported
 
 

@@ -12,13 +12,14 @@ from pydantic import Field, model_validator
 from pydantic_core import ValidationError
 
 from sailviz.errors import Fault, SceneError
+from sailviz.scene.draws import drawn
 from sailviz.scene.faults import faults_of, locate
 from sailviz.scene.loading import find_scene
 from sailviz.scene.named_files import outside
 from sailviz.scene.units_in_keys import convert
 from sailviz.scene.values import Section, one_of
 from sailviz.shipped import shipped_scenes, shipped_sweeps
-from sailviz.sweeps.distributions import MOST_VALUES, Axis, Draw, axis, drawn, varied
+from sailviz.sweeps.distributions import MOST_VALUES, Axis, axis, varied
 from sailviz.words import nearest
 
 

@@ -108,12 +108,15 @@ def _of_others(path: Path) -> bool:
 
 def of_run(run: Run, label: str) -> Evidence:
     """A run as evidence: numbers only."""
+    from sailviz.recording.attitude_ensembles import attitude_ensemble_path, attitude_ensemble_table
     from sailviz.recording.contract import ensemble_path, ensemble_table, tables
 
     steps = run.first + np.arange(len(run))
     found = {entity: Table(steps, run.time, table) for entity, table in tables(run).items() if table}
     for ensemble in run.setting.ensembles:
         found[ensemble_path(ensemble)] = Table(ensemble.step, ensemble.time, ensemble_table(ensemble))
+    for turned in run.setting.attitude_ensembles:
+        found[attitude_ensemble_path(turned)] = Table(turned.step, turned.time, attitude_ensemble_table(turned))
     events = sorted(run.events, key=lambda event: event.time)
     rows = np.minimum(np.searchsorted(run.time, [event.time for event in events], side="left"), len(run) - 1)
     setting = run.setting
@@ -197,7 +200,8 @@ def frame_of(body: str, resolved: dict[str, Any]) -> str:
 
 def truth_of(recording: Recording) -> list[str]:
     """The entities of the contract that have rows: those of the run, of its ensembles, of the flights beside it."""
-    ensembles = [name for name in recording.entities if name.startswith("/ensemble/") and name.count("/") == 2]
+    own = ("/ensemble/", "/attitude_ensemble/")
+    ensembles = [name for name in recording.entities if name.startswith(own) and name.count("/") == 2]
     beside = [name for name in recording.entities if name.startswith(FLIGHT) and not name.endswith("/scene")]
     devices = [name for name in recording.entities if name.startswith(DEVICES)]
     return [entity for entity in TRUTH if entity in recording] + devices + ensembles + beside

@@ -47,10 +47,12 @@ TRACE = "the **sphere** is of directions: the cyan line is where the sail's axis
 
 
 def has_axis(story: Story) -> bool:
-    """Whether the craft turns by itself, and its axis moves so much that it is seen."""
+    """Whether the craft turns by itself, and its axis, or that of flights beside it, moves so much that it is seen."""
     attitude = story.told.samples.run.attitude
     if not attitude.motion or len(story.told.time) < 3:
         return False
+    if story.setting.attitude_ensembles:
+        return True
     axis = axis_of(story)
     return bool(np.min(axis @ axis[0]) < np.cos(MOVES))
 

@@ -10,6 +10,7 @@ import numpy as np
 from sailviz.constants import YEAR
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.arrival_plane import MILLI_AU
+from sailviz.recording.drawing.attitude_ensembles import table_of
 from sailviz.recording.drawing.phrases import LONG, clock
 from sailviz.run import gaps
 from sailviz.run.arrays import Event, Setting
@@ -27,7 +28,9 @@ def about(setting: Setting, notes: Iterable[str] = (), steady: Iterable[str] = (
     ends = ["Steady all along: " + " · ".join(f"**{words}**" for words in constants)] if len(constants) > 1 else []
     first = " ".join(part for part in (setting.about.strip(), f"*{aside}*" if aside else "") if part)
     table = scoreboard(setting) if setting.ensembles else []
-    told = () if len(setting.ensembles) > 1 else (*setting.look_for, *notes)  # the table takes their room
+    table += table_of(setting) if setting.attitude_ensembles else []
+    several = len(setting.ensembles) > 1 or len(setting.attitude_ensembles) > 1
+    told = () if several else (*setting.look_for, *notes)  # the table takes their room
     hints = [f"- {hint.strip()}" for hint in told]
     parts = [[first] if first else [], table, hints, *([words] for words in ends)]
     return "\n\n".join("\n".join(part) for part in parts if part)

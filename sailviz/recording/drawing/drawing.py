@@ -16,6 +16,7 @@ from sailviz.recording import timelines
 from sailviz.recording.companions import Overlay
 from sailviz.recording.drawing import style
 from sailviz.recording.drawing.arrival_plane import arrivals_of
+from sailviz.recording.drawing.attitude_ensembles import log_attitude_ensembles, log_axes
 from sailviz.recording.drawing.axis_trace import TRACE, has_axis, in_front, log_axis
 from sailviz.recording.drawing.blueprint import blueprint
 from sailviz.recording.drawing.curves import Curves, words_of
@@ -179,6 +180,8 @@ class Drawing:
         bars = any(ensemble.method == "monte-carlo" for ensemble in setting.ensembles)
         if setting.ensembles:
             plots = [*plots_of_ensembles(setting), *plots]
+        if setting.attitude_ensembles:
+            plots = [*log_attitude_ensembles(picture, setting), *plots]
         spaces, close, spans, aside = self._spaces(story, 3 if bars else min(len(plots), 2))
         if story.frame.low:
             notes = orbit_words(story)
@@ -190,6 +193,7 @@ class Drawing:
         layout = self._layout(spaces, close, plots, spans, story, last, story.duration)
         if has_axis(story):
             axis, more = log_axis(picture, story)
+            log_axes(picture, setting)
             layout.spans |= more
             if in_front(story):
                 layout.spaces.insert(0, axis)

@@ -25,7 +25,6 @@ OF_LIGHT = ("light_torque",)
 OF_AIR = ("air_torque",)
 OF_ACTUATORS = ("control_torque", "wheel_momentum")
 OF_BODY = ("body_rate", "nutation", "wheel_momentum")  # quantities that only a craft that turns has
-DRAWN = "attitudes, rates and inertias are drawn by a sweep, whose flights turn each by itself"
 BELONGS = 'belongs to a craft that turns: attitude.kind "free", "controlled" or "spin-averaged"'
 
 
@@ -143,13 +142,11 @@ def _flown_alone(scene: Scene) -> Faults:
     words = f"knows crafts that stand as their steering says, and the attitude is {attitude.kind}"
     found: Faults = []
     for name, what in (
-        ("ensemble", "an ensemble"),
         ("chaos", "an expansion"),
         ("approximation", "an analytic solution"),
     ):
         if getattr(scene, name):
-            more = f"; {DRAWN}" if name == "ensemble" else ""
-            found.append((f"{name}[0]", f"{what} {words}{more}"))
+            found.append((f"{name}[0]", f"{what} {words}"))
     if scene.propagation.integrator not in ("auto", "dop853"):
         found.append(("propagation.integrator", f'{scene.propagation.integrator} {words}: "dop853"'))
     if scene.device.drag_area == "attitude":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sailviz.scene.attitude import Moving
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.devices import CONTROLS
 from sailviz.scene.conflicts.records import device_of, devices_of, start_of, steering_of
@@ -131,7 +132,7 @@ def sail_with_a_shape(scene: Scene) -> Faults:
     for i, item in enumerate(scene.ensemble):
         if isinstance(item.control, ElectrochromicControl):
             found.append((f"ensemble[{i}].control", "a film that darkens is known of flat sails only"))
-        if steering_of(scene).frame(scene.steering) == "meridian":
+        if not isinstance(scene.attitude, Moving) and steering_of(scene).frame(scene.steering) == "meridian":
             words = "a shape that is laid by the meridian turns along the flight: count from the orbit's frame"
             found.append((f"ensemble[{i}].name", words))
     return found

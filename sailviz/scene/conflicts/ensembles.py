@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
+from sailviz.scene.conflicts import turning_ensembles
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.devices import CONTROLS
 from sailviz.scene.conflicts.limits import too_many
@@ -85,6 +86,9 @@ def ensembles(scene: Scene) -> Faults:
     """Whether a scene's ensembles have names of their own, fly its craft, and find what they draw."""
     placed = placed_ensembles(scene)
     found = _names(placed)
+    if turning_ensembles.turns(scene):
+        return found + turning_ensembles.of_turning(scene)
+    found += turning_ensembles.drawn_by_others(scene)
     if placed:
         found += [(placed[0][0], sentence) for sentence in _not_side_by_side(scene)]
     for place, item in placed:

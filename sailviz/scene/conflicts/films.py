@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from sailviz.scene.attitude import Moving
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.device import SolarSail
 from sailviz.scene.film import WITH_OPTICS, ages, asked_for, has_optics, radiates
@@ -52,7 +53,7 @@ def _ageing(scene: Scene) -> Faults:
     if isinstance(steering, OptimalSteering) and steering.reckons_with is None:
         words = "was solved for a film that stays as it is: say with which it reckons, reckons_with, or steer otherwise"
         found.append(("steering.kind", f'"{steering.kind}" {words}'))
-    if scene.ensemble or scene.chaos:
+    if (scene.ensemble or scene.chaos) and not isinstance(scene.attitude, Moving):
         place = "ensemble[0]" if scene.ensemble else "chaos[0]"
         found.append((place, "ensembles fly films that stay as they are: device.ageing"))
     if scene.propagation.integrator not in ("auto", "dop853"):

@@ -11,6 +11,7 @@ from sailviz.calendar import LONGEST, OUT_OF_REACH, DateError, in_reach
 from sailviz.constants import YEAR
 from sailviz.scene.attitude import Moving
 from sailviz.scene.conflicts.answers import Faults
+from sailviz.scene.conflicts import turning_ensembles
 from sailviz.scene.conflicts.attitude import BELONGS, OF_BODY
 from sailviz.scene.conflicts.craft import has_surface
 from sailviz.scene.conflicts.ensembles import placed_ensembles
@@ -110,11 +111,19 @@ def expected_of_ensembles(scene: Scene) -> Faults:
     found, known = [], list(dict.fromkeys(item.name for _, item in placed_ensembles(scene)))
     for i, expected in enumerate(scene.expect):
         if expected.ensemble is None:
+            if spellings()[expected.quantity].stem == "share":
+                words = "share is that of an ensemble's flights: say which, ensemble"
+                found.append((f"expect[{i}].quantity", words))
             continue
         if expected.ensemble not in known:
             words = f"no such ensemble {shown(expected.ensemble)}. {nearest(expected.ensemble, known)}"
             found.append((f"expect[{i}].ensemble", words))
-        elif expected.at != "end":
+        if turning_ensembles.turns(scene):
+            found += turning_ensembles.expected(scene, expected, f"expect[{i}]", moments_of(scene))
+            continue
+        if expected.statistic == "percentile":
+            found.append((f"expect[{i}].statistic", "percentiles are known of ensembles of a craft that turns"))
+        if expected.ensemble in known and expected.at != "end":
             found.append((f"expect[{i}].at", 'statistics of an ensemble are those of its ends: at = "end"'))
         stem = spellings()[expected.quantity].stem
         if stem not in PLACES and (stem not in MEANS or expected.statistic != "mean"):
@@ -141,15 +150,21 @@ def expected_of_devices(scene: Scene) -> Faults:
     return found
 
 
-def expected_moments(scene: Scene) -> Faults:
-    """Expectations are of moments that the run can meet, and of a mass that is known."""
-    found, happens = [], {item.called for item in scene.event} | COME_WITH_DEVICES
+def moments_of(scene: Scene) -> list[str]:
+    """Names of the events that a run can meet."""
+    happens = {item.called for item in scene.event} | COME_WITH_DEVICES
     if isinstance(scene.attitude, Moving):
         happens |= {"tumbling", "Sun angle", "wheels saturated"}
     if scene.place is not None:
         happens |= {f"{device.name} {word}" for device in scene.devices for word in ("on", "off")}
     happens |= {end_of(phase.name) for phase in scene.phase[:-1]}
-    words = [*STATISTICS_OF_ROWS, *sorted(happens)]
+    return sorted(happens)
+
+
+def expected_moments(scene: Scene) -> Faults:
+    """Expectations are of moments that the run can meet, and of a mass that is known."""
+    found: Faults = []
+    words = [*STATISTICS_OF_ROWS, *moments_of(scene)]
     for i, expected in enumerate(scene.expect):
         if expected.quantity.startswith("mass_") and scene.device.mass is None:
             found.append((f"expect[{i}].quantity", "the device gives no mass"))

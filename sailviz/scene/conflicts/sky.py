@@ -6,6 +6,7 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
 from sailviz.scene.body import CustomBody
+from sailviz.scene.attitude import Moving
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.records import start_of
 from sailviz.scene.conflicts.start_points import radius_of_body
@@ -194,7 +195,7 @@ def drag_by_attitude(scene: Scene) -> Faults:
 
 def many_under_a_sky(scene: Scene) -> Faults:
     """Ensembles know the Sun's pull and light alone."""
-    if not scene.ensemble and not scene.chaos:
+    if (not scene.ensemble and not scene.chaos) or isinstance(scene.attitude, Moving):
         return []
     place = "ensemble[0]" if scene.ensemble else "chaos[0]"
     if scene.environment.gravity_of is not None:

@@ -10,10 +10,10 @@ import numpy as np
 
 from sailviz.checks.closed_forms import FORMS, Motion, error
 from sailviz.elements import elements
-from sailviz.run.arrays import Attitude, Event, Run, Thrust
+from sailviz.run.arrays import Attitude, AttitudeEnsemble, Event, Run, Thrust
 from sailviz.run.quantities import arc, circular_mean, unwrapped
 from sailviz.scene.loading import Scene
-from sailviz.scene.quantities import of_attitude_ensemble, of_ensemble, spellings
+from sailviz.scene.quantities import Quantity, of_ensemble, spellings
 from sailviz.scene.sections import STATISTICS_OF_ROWS, Expectation
 
 
@@ -319,3 +319,17 @@ def check(scene: Scene, run: Run) -> list[Verdict]:
     judge = Judge(scene)
     judge.add(run)
     return judge.verdicts()
+
+
+def of_attitude_ensemble(ensemble: AttitudeEnsemble, quantity: Quantity, item: Expectation) -> float:
+    """A statistic over the flights of a craft that turns, of what each has at a moment, in the quantity's unit: "mean",
+    "miss" (mean less the scene's own flight's), "deviation" or "percentile"; of "share" that of the flights which meet
+    the event. NaN where a flight has no value."""
+    if quantity.stem == "share":
+        return float(ensemble.share(str(item.at))[-1])
+    values = ensemble.values.get(f"{quantity.stem}@{item.at}", np.full(ensemble.flights + 1, np.nan)) / quantity.factor
+    flights, nominal = values[:-1], values[-1]
+    if item.statistic == "percentile":
+        return float(np.percentile(flights, item.percent or 0.0))
+    found = {"mean": flights.mean(), "miss": flights.mean() - nominal, "deviation": flights.std(ddof=1)}
+    return float(found[item.statistic or "mean"])

@@ -25,6 +25,7 @@ from sailviz.scene.attitude import Attitudes
 from sailviz.scene.body import CENTRE, CustomBody, Target
 from sailviz.scene.conflicts import beside_conflicts, conflicts
 from sailviz.scene.conflicts.known_starts import dated
+from sailviz.scene.conflicts.turning_ensembles import middle_faults
 from sailviz.scene.device import Devices
 from sailviz.scene.device_list import Beside, taken_apart
 from sailviz.scene.environment import Environment
@@ -267,6 +268,9 @@ def _validated(raw: dict[str, Any], text: str, source: str, given: list[str]) ->
         faults = apart.written(Fault(converted.path(place) or place, what) for place, what in told)
     if not faults:
         faults = apart.written(Fault(converted.path(place) or place, what) for place, what in conflicts(scene))
+    if not faults and scene.ensemble:
+        told = middle_faults(scene, lambda tables, values: build_scene(tables, values, text, source))
+        faults = apart.written(Fault(converted.path(place) or place, what) for place, what in told)
     if not faults:
         found = beside_conflicts(scene)
         told_beside = (Fault(converted_beside.path(place) or place, what) for place, what in found)

@@ -15,8 +15,7 @@ from sailviz.units import UNITS, spelled
 if TYPE_CHECKING:
     import numpy as np
 
-    from sailviz.run.arrays import AttitudeEnsemble, EnsembleStatistics, Run
-    from sailviz.scene.sections import Expectation
+    from sailviz.run.arrays import EnsembleStatistics, Run
 
 DIMENSIONS = {
     "time": "time",
@@ -135,19 +134,3 @@ def of_ensemble(ensemble: EnsembleStatistics, quantity: Quantity, statistic: str
         "deviation": ensemble.end_deviation[k],
     }[statistic]
     return float(value / quantity.factor)
-
-
-def of_attitude_ensemble(ensemble: AttitudeEnsemble, quantity: Quantity, item: Expectation) -> float:
-    """A statistic over the flights of a craft that turns, of what each has at a moment, in the quantity's unit: "mean",
-    "miss" (mean less the scene's own flight's), "deviation" or "percentile"; of "share" that of the flights which meet
-    the event. NaN where a flight has no value."""
-    import numpy as np
-
-    if quantity.stem == "share":
-        return float(ensemble.share(str(item.at))[-1])
-    values = ensemble.values.get(f"{quantity.stem}@{item.at}", np.full(ensemble.flights + 1, np.nan)) / quantity.factor
-    flights, nominal = values[:-1], values[-1]
-    if item.statistic == "percentile":
-        return float(np.percentile(flights, item.percent or 0.0))
-    found = {"mean": flights.mean(), "miss": flights.mean() - nominal, "deviation": flights.std(ddof=1)}
-    return float(found[item.statistic or "mean"])

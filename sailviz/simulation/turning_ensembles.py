@@ -19,12 +19,13 @@ from sailviz.run.quantities import VALUES
 from sailviz.scene.attitude import ControlledAttitude
 from sailviz.scene.conflicts.turning_ensembles import draws_of, varies, without_ensembles
 from sailviz.scene.device import SolarSail
-from sailviz.scene.draws import Draw, flight_seed
+from sailviz.scene.draws import Draw
 from sailviz.scene.loading import Scene, build_scene
 from sailviz.scene.overrides import place_of
 from sailviz.scene.quantities import spellings
 from sailviz.scene.sections import Ensemble
 from sailviz.simulation.output_times import OutputTimes
+from sailviz.uncertainty.draws import value_of
 
 OUTPUTS = 181  # rows of the run at which ensembles are known
 LEVELS = (1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0)
@@ -98,10 +99,10 @@ class _Members:
     def flown(self, fly: Fly, told: Callable[[int], None]) -> AttitudeEnsemble:
         """All of them, and the scene's own flight after them."""
         flights = self.item.flights
-        drawn = {one.key: np.array([one.value(self.seed, 0, k) for k in range(flights)]) for one in self.draws}
+        drawn = {one.key: np.array([value_of(one, self.seed, 0, k) for k in range(flights)]) for one in self.draws}
         found = []
         for k in range(flights):
-            values = {one.key: one.value(self.seed, 0, k) for one in self.draws}
+            values = {one.key: value_of(one, self.seed, 0, k) for one in self.draws}
             found.append(self._one(fly, values, f"flight {k}"))
             told(k + 1)
         nominal = self._one(fly, {}, "the nominal flight")

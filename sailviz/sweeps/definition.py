@@ -18,13 +18,14 @@ import numpy as np
 
 import sailviz
 from sailviz.errors import Fault, SceneError
-from sailviz.scene.draws import Draw, flight_seed
+from sailviz.scene.draws import Draw
 from sailviz.scene.faults import locate
 from sailviz.scene.loading import Scene, SceneSource, build_scene, load_scene
 from sailviz.scene.sections import Expectation
 from sailviz.sweeps.conflicts import disagreements, value_faults
 from sailviz.sweeps.distributions import Axis, too_many, varied
 from sailviz.sweeps.report import column, numbered, report_faults, reported
+from sailviz.uncertainty.draws import flight_seed, value_of
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,7 @@ class Definition:
             else:
                 rest, place = divmod(rest, len(item.values))
                 found[item.key] = item.values[place]
-        found |= {item.key: item.value(self.seed, cell, draw) for item in self.drawn}
+        found |= {item.key: value_of(item, self.seed, cell, draw) for item in self.drawn}
         return {key: found[key] for key in self.keys}
 
     def seed_of(self, flight: int) -> int:

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 from pydantic_core import ValidationError
 
 from sailviz.errors import Fault, SceneError
-from sailviz.scene.draws import drawn
+from sailviz.scene.draws import Draw, drawn
 from sailviz.scene.faults import faults_of, locate
 from sailviz.scene.loading import find_scene
 from sailviz.scene.named_files import outside

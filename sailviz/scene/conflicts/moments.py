@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 from sailviz.calendar import LONGEST, OUT_OF_REACH, DateError, in_reach
 from sailviz.constants import YEAR
 from sailviz.scene.attitude import Moving
-from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts import turning_ensembles
+from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.attitude import BELONGS, OF_BODY
 from sailviz.scene.conflicts.craft import has_surface
 from sailviz.scene.conflicts.ensembles import placed_ensembles

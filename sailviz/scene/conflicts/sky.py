@@ -5,8 +5,8 @@ from __future__ import annotations
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from sailviz.scene.body import CustomBody
 from sailviz.scene.attitude import Moving
+from sailviz.scene.body import CustomBody
 from sailviz.scene.conflicts.answers import Faults
 from sailviz.scene.conflicts.records import start_of
 from sailviz.scene.conflicts.start_points import radius_of_body

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 from sailviz.errors import SceneError
 from sailviz.scene.attitude import Moving
@@ -83,27 +84,27 @@ def _keys(scene: Scene, item: Ensemble, place: str) -> Faults:
             middle[one.key] = drawn(one.key, one.distribution).centre()
         except ValueError as error:
             found.append((f"{place}.draw[{i}].distribution", str(error).removesuffix(".")))
-    return found or _middle(scene, middle, place)
+    return found
 
 
-def _middle(scene: Scene, middle: dict[str, float], place: str) -> Faults:
-    from sailviz.scene.loading import build_scene
+def middle_faults(scene: Scene, build: Callable[[dict[str, Any], dict[str, Any]], Scene]) -> Faults:
+    """What is wrong with the scene of a flight that draws a middle value of each key, where the scene itself will do.
+    build : makes a scene of tables and values put over them."""
+    found: Faults = []
+    for i, item in enumerate(scene.ensemble):
+        middle = {one.key: one.centre() for one in draws_of(item)}
+        try:
+            build(without_ensembles(scene), middle)
+        except SceneError as error:
+            for fault in error.faults:
+                number = _said_by(fault.where, middle)
+                where = f"ensemble[{i}].draw" if number is None else f"ensemble[{i}].draw[{number}].key"
+                hint = f". {fault.hint.removesuffix('.')}" if fault.hint else ""
+                found.append((where, f"{fault.where}: {fault.what.removesuffix('.')}{hint}"))
+    return found
 
-    try:
-        build_scene(without_ensembles(scene), middle, scene.text, scene.source)
-    except SceneError as error:
-        told = [(fault, _said_by(fault.where, middle)) for fault in error.faults]
-        return [
-            (
-                f"{place}.draw" if number is None else f"{place}.draw[{number}].key",
-                f"{fault.where}: {fault.what.removesuffix('.')}{f'. {fault.hint}' if fault.hint else ''}",
-            )
-            for fault, number in told
-        ]
-    return []
 
-
-def without_ensembles(scene: Scene) -> dict[str, object]:
+def without_ensembles(scene: Scene) -> dict[str, Any]:
     """A scene's tables without its ensembles and what is expected of any flight."""
     return {key: value for key, value in scene.raw.items() if key not in ("ensemble", "expect")}
 

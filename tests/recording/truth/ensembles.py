@@ -71,7 +71,11 @@ def joined(f, entity, expected, color, tolerance=None):
 
 def color_of(f, name) -> str:
     """The word that the description has for an ensemble's colour."""
-    title = f.truth.recording[f"/ensemble/{name}/facts"]["name"][0]
+    return color_of_table(f, f.truth.recording[f"/ensemble/{name}/facts"]["name"][0])
+
+
+def color_of_table(f, title) -> str:
+    """The word in the line of the description's table that ends in a name."""
     text = f.picture.fixed("/about", "TextDocument:text")[0]
     (line,) = [line for line in text.splitlines() if line.startswith("| **") and line.endswith(f"| {title} |")]
     return line.split("**")[1]

@@ -322,6 +322,13 @@ def together_low():
 SMALL = {"propagation__outputs": 31}
 
 
+def tumbling_or_not():
+    """Two ensembles of a sail that is let go with errors."""
+    several = [one | {"flights": 9, "keep": 5} for one in sailviz.load_scene("body/tumble-or-not").raw["ensemble"]]
+    values = {"ensemble": several, "expect": [], "propagation.outputs": 61, "propagation.duration_h": 6}
+    return sailviz.simulate(sailviz.load_scene("body/tumble-or-not", values))
+
+
 def round_a_planet():
     """A sail high over the Earth, its light from an even Sun, clock angle and all."""
     return sailviz.simulate(
@@ -641,6 +648,7 @@ FLIGHTS: dict[str, Callable[[], sailviz.Run | dict[str, sailviz.Run]]] = {
     "turning low": turning_low,
     "tumbling": scene("body/tumbling", propagation__outputs=61),
     "swinging": scene("body/swinging-pyramid", propagation__duration_h=1, propagation__outputs=41),
+    "tumbling or not": tumbling_or_not,
     "averaged spin": scene("body/ikaros", propagation__outputs=61),
     "sliding mass": scene("body/offset", propagation__outputs=61),
     "held": scene("wind/held-displaced", propagation__outputs=61),

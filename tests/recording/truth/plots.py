@@ -358,7 +358,7 @@ def about(f, entity):
     many = text.count("\n| **") > 1  # then the table takes the room
     walls, sphere = any(e.startswith("/world/fence") for e in f.picture.entities), axis.first(f)
     assert many or ("**wall on the trail**" in text) == (walls and not sphere)
-    assert ("**sphere** is of directions: the cyan line" in text) == sphere
+    assert many or ("**sphere** is of directions: the cyan line" in text) == sphere
     if "the **turquoise** arrow is the primer" in text:
         assert "/sail/primer" in f.picture.entities
     rows_told(f, text)
@@ -427,7 +427,7 @@ def ensemble_colors(f, name):
     for entity in f.picture.entities:
         if re.search(rf"/{re.escape(path)}(/|$)", entity) and not entity.startswith("/plots"):
             found += [f.picture.color(entity, kind)[0] for kind in kinds & f.picture.components(entity)]
-    assert len(found) > 4
+    assert len(found) > (1 if "/axis/ensemble" in " ".join(f.picture.entities) else 4)
     return found
 
 

@@ -14,6 +14,7 @@ from functools import cache, partial
 
 from . import (
     arrival,
+    attitude_ensembles,
     axis,
     close_up,
     craft,
@@ -349,6 +350,12 @@ ENSEMBLES = (
     Claim("/plots/ensemble/*/*/median", CURVE, "percentiles", "less nominal", "title's unit", ensembles.median),
     Claim("/plots/ensemble/*/*/one", CURVE, "one_*", "-", "title's unit", ensembles.one_flight),
     Claim("/flights/*", "BarChart", "histogram", "from nominal", "100, 1000/au", ensembles.histogram),
+    Claim("/axis/ensemble/*/now", POINT, "kept_axis", SPHERE, "1.004", attitude_ensembles.axes_now),
+    Claim("/axis/ensemble/*/tail", LINE, "kept_axis", SPHERE, "1.004", attitude_ensembles.tails),
+    Claim("/plots/attitude_ensemble/share/*/*", CURVE, "met_EVENT_s", "-", "title's unit", attitude_ensembles.share),
+    Claim("/plots/attitude_ensemble/*/nominal", CURVE, "nominal_*", "-", "title's unit", attitude_ensembles.nominal),
+    Claim("/plots/attitude_ensemble/*/*/band#", BAND, "percentiles", "-", "title's unit", attitude_ensembles.band),
+    Claim("/plots/attitude_ensemble/*/*/median", CURVE, "percentiles", "-", "title's unit", attitude_ensembles.median),
     Claim("/arrival/*/axes", "LineStrips2D", "their own numbers", "less nominal", "numbers", arrival.axes),
     Claim("/arrival/*/axes/names", "Points2D", "their own numbers", "less nominal", "1", arrival.axis_names),
     Claim("/arrival/*/axes/numbers", "Points2D", "their ticks", "less nominal", "deg, 1000/au", arrival.axis_numbers),
@@ -386,6 +393,7 @@ NUMBERS = ("/state", "/attitude", "/thrust", "/elements", "/environment", "/appr
 NUMBERS = (
     *NUMBERS,
     "/film",
+    "/attitude_ensemble",
     "/phases",
     "/scene",
     "/flight",

@@ -18,6 +18,7 @@
               covariance_m2 (9: radial, along and across the orbit, about the mean); percentiles at `levels`, columns of
               that many numbers, unit in each name; kept_position_m (3 per flight drawn); one_NAME of the first flight;
               saturated and histogram, shares. /ensemble/NAME/facts, static: levels, ends of the flights, words
+/attitude_ensemble/NAME  of every ensemble of a craft that turns: see `recording.attitude_ensembles`
 /events       name, time_s, state (position m, velocity m/s, mass kg: 7), at the first row not before the event
 /scene        static: what the run was made from and how far it got; gaps_s (start, end) of each span without data;
               phases, names, phases_s (start, end), NaN of one that never came, and phases_words, what held;

@@ -42,8 +42,29 @@ def _inner(table: Any, part: str) -> Any:
     if not isinstance(table, dict):
         return None
     if not isinstance(table.get(part), (dict, list)):
-        table[part] = {}
+        twin = next((name for name in same_quantity(part, table) if isinstance(table[name], list)), None)
+        table[part] = {} if twin is None else _scaled(table.pop(twin), _factor(twin, part))
     return table[part]
+
+
+def _factor(one: str, other: str) -> float:
+    """What a quantity in the unit of a key is multiplied by, to be in that of another key of the same quantity."""
+    found = 1.0
+    for units in UNITS.values():
+        ends = [
+            max((unit for unit in units if unit and key.endswith(f"_{unit}")), key=len, default="")
+            for key in (one, other)
+        ]
+        if all(ends) and one.removesuffix(f"_{ends[0]}") == other.removesuffix(f"_{ends[1]}"):
+            found = units[ends[0]] / units[ends[1]]
+    return found
+
+
+def _scaled(value: Any, factor: float) -> Any:
+    """Numbers in lists, in another unit."""
+    if isinstance(value, list):
+        return [_scaled(item, factor) for item in value]
+    return value * factor if isinstance(value, (int, float)) and not isinstance(value, bool) else value
 
 
 def _numbered(items: list[Any], part: str) -> bool:

@@ -176,3 +176,10 @@ def test_progress_of_many_flights_never_falls():
     assert told == sorted(told)
     assert told[-1] == 1.0
     assert min(told) > 0
+
+
+def test_a_number_in_a_list_may_be_drawn_in_another_unit_than_the_file_has():
+    changed = load_scene(wheeled(), {"attitude.rates_rad_s.0": 0.5, "attitude.centre_of_mass_m": [1.0, 2.0, 3.0]})
+    assert changed.attitude.rates == pytest.approx([0.5, 0.0, np.radians(0.1)], abs=1e-15)
+    again = changed.with_values({"attitude.centre_of_mass_km.2": 0.004})
+    assert again.attitude.centre_of_mass == pytest.approx([1.0, 2.0, 4.0])

@@ -1,8 +1,9 @@
 """What an event watches beside the kinds that are built in: any quantity that is a function of time and state.
 
 A callback, one number at a time: the quantity by its place in QUANTITIES, and how large it is, against which rounding
-counts. Three of them, so that a scene compiles no more than it watches: what the state alone says (its formulas stand
-in run/formulas.py), what steering and device do, and what surrounds a craft in low orbit. Values are those of the rows
+counts. Four of them, so that a scene compiles no more than it watches: what the state alone says (its formulas stand
+in run/formulas.py), how a craft that turns stands, what steering and device do, and what surrounds a craft in low
+orbit. Values are those of the rows
 of a run, but for two, watched by their inverses, which go on where they are infinite: `INVERSE`.
 """
 
@@ -29,6 +30,7 @@ OF_STATE = (
     "mean_altitude", "thrust_factor",
 )  # fmt: skip
 OF_CRAFT = ("pitch", "cone", "clock", "thrust_acceleration")
+OF_ATTITUDE = ("pitch", "clock")  # of OF_CRAFT, those that the normal tells
 OF_LOW_ORBIT = (
     "sunlit_fraction", "air_drag", "plasma_density", "plasma_force", "tether_voltage", "tether_current", "tether_power",
     "tether_tilt",
@@ -198,6 +200,13 @@ def _of_craft(time, state, parameters, own, number, out):
     found[0], found[1], found[2], found[3] = value, size, 0.0, 0.0
 
 
+def _of_attitude(time, state, parameters, own, number, out):
+    p, y, found = record_at(parameters, PARAMETERS), array_at(state, STATE), array_at(out, 4)
+    nx, ny, nz = p.inertial.x, p.inertial.y, p.inertial.z  # where the motion of the body has it
+    value, size = angles(number, y[0], y[1], y[2], y[3], y[4], y[5], nx, ny, nz)
+    found[0], found[1], found[2], found[3] = value, size, 0.0, 0.0
+
+
 def _of_low_orbit(time, state, parameters, own, number, out):
     p, y, found = record_at(parameters, PARAMETERS), array_at(state, STATE), array_at(out, 4)
     if number < PITCH:
@@ -209,8 +218,11 @@ def _of_low_orbit(time, state, parameters, own, number, out):
     found[0], found[1], found[2], found[3] = value, size, 0.0, 0.0
 
 
-def quantity_callback(watched: Collection[str], low_orbit: bool) -> Callback:
-    """Whatever is watched, for `dynamics.model`. low_orbit : whether a tether or air tell the attitude and the rest."""
+def quantity_callback(watched: Collection[str], low_orbit: bool, turns: bool = False) -> Callback:
+    """Whatever is watched, for `dynamics.model`. low_orbit : whether a tether or air tell the attitude and the rest;
+    turns : whether the craft has a motion of its own about its centre of mass."""
+    if turns and all(name in OF_ATTITUDE for name in watched):
+        return callback(_of_attitude)
     if any(name in OF_LOW_ORBIT for name in watched) or (low_orbit and any(name in OF_CRAFT for name in watched)):
         return callback(_of_low_orbit)
     return callback(_of_craft if any(name in OF_CRAFT for name in watched) else _of_state)

@@ -159,7 +159,7 @@ def quantities_watched(scene: Scene, device: int, phase: Phase | None = None) ->
         return shape_quantities()
     if has_sky(scene) and (stems or blown):
         return sky_quantities()
-    return quantity_callback(stems, device == PLASMA_BRAKE) if stems else None
+    return quantity_callback(stems, device == PLASMA_BRAKE, moves(scene)) if stems else None
 
 
 def _stems_watched(scene: Scene, phase: Phase | None) -> set[str]:

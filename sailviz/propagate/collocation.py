@@ -11,6 +11,7 @@ same to the last bit. Source of the method: gauss_legendre.py; what a step does:
 from __future__ import annotations
 
 from struct import Struct
+from typing import Any
 
 import numpy as np
 
@@ -103,22 +104,20 @@ SWEEPS = 9  # place in Integration.counter, after those that all integrators hav
 
 # a flight of some tens of microseconds is not to wait for its memory: compiled code clears what has to be clear
 _ROWS, _NO_SIGNS, _NO_EVENTS = (NODES + 1 + LENGTH // SIZE, SIZE), np.zeros(0), (1, 9)
-_BEGUN = np.zeros(10, dtype=np.int64)
-_BEGUN[IN_USE] = 1
-_write_state = Struct(f"{SIZE}d{(CLOCK - Y - 1) * SIZE * 8}xd").pack_into  # into the row Y, and TIME
+_begun, _empty = np.eye(10, dtype=np.int64)[IN_USE].copy, np.empty  # a counter of 0 but IN_USE, which is 1
+_write_state: Any = Struct(f"{SIZE}d{(CLOCK - Y - 1) * SIZE * 8}xd").pack_into  # into the row Y, and TIME
 _STATE, _integration = Y * SIZE * 8, tuple.__new__
 
 
 def start(t, position, velocity, mass, events=0) -> Integration:
     """A fresh Integration at time s, position m, velocity m/s, mass kg, with room for a number of events."""
-    work = np.empty(_ROWS)
-    place = position.tolist() if isinstance(position, np.ndarray) else position
-    speed = velocity.tolist() if isinstance(velocity, np.ndarray) else velocity
-    _write_state(work, _STATE, *place, *speed, mass, t)  # type: ignore[arg-type]
+    work = _empty(_ROWS)
+    (x, y, z), (vx, vy, vz) = position, velocity
+    _write_state(work, _STATE, x, y, z, vx, vy, vz, mass, t)
     if events == 0:
-        return _integration(Integration, (work, _BEGUN.copy(), _NO_SIGNS, np.empty(_NO_EVENTS)))
+        return _integration(Integration, (work, _begun(), _NO_SIGNS, _empty(_NO_EVENTS)))
     event = np.empty((MOST_EVENTS + TWICE * MOST_SAMPLES * events + 1, 9))
-    return Integration(work, _BEGUN.copy(), np.zeros(events), event)
+    return Integration(work, _begun(), np.zeros(events), event)
 
 
 def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, largest_step, patience=None) -> int:
@@ -127,8 +126,9 @@ def advance(s, model, breaks, factors, watch, t_out, out, t_end, tolerance, larg
     circular speed, in every row."""
     if patience is None:  # without what takes a twentieth of a flight of twenty microseconds
         status = advance_compiled.at_once(
-            *s, model.parameters, breaks, factors, *watch, t_out, out, t_end, tolerance, largest_step, 0.0
-        )
+            s[0], s[1], s[2], s[3], model.parameters, breaks, factors,
+            watch[0], watch[1], watch[2], watch[3], t_out, out, t_end, tolerance, largest_step, 0.0,
+        )  # fmt: skip
         if status >= 0 and status != PAUSED:
             return status
     numbers = t_end, tolerance, largest_step

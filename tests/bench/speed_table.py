@@ -22,7 +22,7 @@ import test_heyoka_leo as low
 Run = Callable[[], np.ndarray]
 SAIL_TOLERANCES, LOW_TOLERANCES = 10.0 ** -np.arange(4.0, 13.0), 10.0 ** -np.arange(7.0, 12.5, 0.5)
 SAIL_THEIRS, LOW_THEIRS = 10.0 ** -np.arange(4.0, 14.0), 10.0 ** -np.arange(13.0, 18.5, 0.5)
-TURNS = {"sail": 60, "low": 5}
+TURNS = {"sail": 1000, "low": 5}
 
 
 def problems() -> Iterator[tuple[str, np.ndarray, list[tuple[str, float, Run]], int]]:

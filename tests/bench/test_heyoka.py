@@ -2,8 +2,8 @@
 
 Needs the extra `bench`. Both integrate ten years of a sail in units of mu = r0 = 1 and deliver 3650 rows; each has the
 loosest of its tolerances that keeps every position within the error, and every velocity within ten times of it. Pairs
-are interleaved and timed by the thread's own CPU time, so that what else the machine does hits both alike; the median
-of the ratios counts.
+are interleaved and timed by the thread's own CPU time; the least of each counts, which what else the machine does
+changes least.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from sailviz.steering import attitude
 
 heyoka = pytest.importorskip("heyoka")
 
-PAIRS = 201
+PAIRS = 1001
 TIMES = np.linspace(0, 3652.5 / 58.1324409, 3650)  # ten years; sqrt(au^3 / mu) is 58.13 d
 START = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
 TOLERANCES = 10.0 ** -np.arange(5, 12, 0.1)
@@ -112,10 +112,10 @@ def seconds(run):
 @pytest.mark.parametrize(
     ("sail", "goal", "at_least"),
     [
-        ("ideal sail", 1e-9, (12.0, 5.0)),
-        ("ideal sail", 1e-6, (12.0, 5.0)),
-        ("electric sail", 1e-9, (14.0, 6.0)),
-        ("electric sail", 1e-6, (14.0, 6.0)),
+        ("ideal sail", 1e-9, (12.0, 10.0)),
+        ("ideal sail", 1e-6, (12.0, 10.0)),
+        ("electric sail", 1e-9, (14.0, 12.0)),
+        ("electric sail", 1e-6, (14.0, 12.0)),
     ],
 )
 def test_trajectory_of_ten_years_is_faster_than_heyokas_at_equal_error(benchmark, sail, goal, at_least):
@@ -124,8 +124,8 @@ def test_trajectory_of_ten_years_is_faster_than_heyokas_at_equal_error(benchmark
     run, error = best(ours(sail), reference, goal)
     other, other_error = best(theirs(sail), reference, goal)
     pairs = np.array([(seconds(run), seconds(other)) for _ in range(PAIRS)])
-    ratio = np.median(pairs[:, 1] / pairs[:, 0])
-    microseconds = np.median(pairs, axis=0) * 1e6
+    microseconds = pairs.min(axis=0) * 1e6
+    ratio = microseconds[1] / microseconds[0]
     benchmark.extra_info |= {
         "error": error,
         "error heyoka": other_error,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import types
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from pydantic import BaseModel, GetJsonSchemaHandler
@@ -71,6 +72,14 @@ def dimension_and_models(annotation: object, metadata: Iterable[object] = ()) ->
     return dimension, models
 
 
+@cache
+def _held(model: type[BaseModel], name: str) -> tuple[str | None, Models]:
+    """`dimension_and_models` of a field."""
+    info = model.model_fields[name]
+    return dimension_and_models(info.annotation, info.metadata)
+
+
+@cache
 def words_of_kind(model: type[BaseModel]) -> tuple[str, ...]:
     """What may stand as the `kind` of a section, e.g. ("circular",)."""
     kind = model.model_fields.get("kind")
@@ -104,11 +113,12 @@ class _Spelling:
     unit: str
 
 
+@cache
 def _spellings(model: type[BaseModel]) -> dict[str, _Spelling]:
     """Every key that a section allows."""
     allowed = {}
-    for name, info in model.model_fields.items():
-        dimension, _ = dimension_and_models(info.annotation, info.metadata)
+    for name in model.model_fields:
+        dimension, _ = _held(model, name)
         if dimension:
             for unit, key in zip(UNITS[dimension], spelled(name, dimension), strict=True):
                 allowed[key] = _Spelling(name, dimension, unit)
@@ -145,8 +155,7 @@ def _why_not(model: type[BaseModel], key: str) -> str:
 
 def _without_unit(model: type[BaseModel], key: str, value: object, here: str, found: Conversion) -> object:
     """A quantity whose key has no unit, which is right for a word in its place only."""
-    info = model.model_fields[key]
-    dimension, _ = dimension_and_models(info.annotation, info.metadata)
+    dimension, _ = _held(model, key)
     if dimension and not isinstance(value, str):
         words = ", ".join(spelled(key, dimension))
         found.faults.append(Fault(here, "needs its unit in the key.", f"Write one of {words}."))
@@ -165,8 +174,7 @@ def _field(
     """The value of a field in SI. again : the table has said it before."""
     if not spelling.dimension:
         found.places[field_here] = Written(here)
-        info = model.model_fields[spelling.name]
-        _, models = dimension_and_models(info.annotation, info.metadata)
+        _, models = _held(model, spelling.name)
         return _value(models, value, field_here, here, found)
     if again:
         found.faults.append(Fault(here, f"says {spelling.name} a second time, in another unit."))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+from functools import cache
 from importlib.metadata import version
 from typing import Any
 
@@ -58,7 +59,7 @@ def setting_of(p: Plan, planets, rows, ensembles=(), measure=True) -> Setting:
             "sailviz": sailviz.__version__,
             "python": platform.python_version(),
             "numpy": np.__version__,
-            "numba": version("numba"),
+            "numba": _numba_version(),
         },
         accuracy=accuracy_in_words(p, measure),
         identity=p.identity,
@@ -69,6 +70,11 @@ def setting_of(p: Plan, planets, rows, ensembles=(), measure=True) -> Setting:
         ensembles=ensembles,
         phases=p.phases,
     )
+
+
+@cache
+def _numba_version() -> str:
+    return version("numba")  # read from a file: of a sweep's flight it would be a tenth
 
 
 def magnetopause(p: Magnetosphere) -> np.ndarray | None:

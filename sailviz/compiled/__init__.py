@@ -1,9 +1,9 @@
 """How sailviz compiles: machine code is kept on disk and found again without the compiler, which is imported only where
 something has to be compiled.
 
-A kernel that Python calls is an `entry`; what entries call is `inlined` or `called`; what a scene brings along is a C
-function (`c_function`). None of these imports numba when it is decorated, loaded or called, if its machine code is on
-disk.
+A kernel that Python calls is an `entry`; what entries call is `inlined`, `called` or `apart`; what a scene brings along
+is a C function (`c_function`). None of these imports numba when it is decorated, loaded or called, if its machine code
+is on disk.
 
     @entry("F2 I1 p1 f1 i", PARAMETERS)
     def advance_compiled(work, count, parameters, times, piece):
@@ -26,6 +26,7 @@ from sailviz.lazy import lazily
 if TYPE_CHECKING:
     from sailviz.compiled.decorators import OPTIONS as OPTIONS
     from sailviz.compiled.decorators import Late as Late
+    from sailviz.compiled.decorators import apart as apart
     from sailviz.compiled.decorators import called as called
     from sailviz.compiled.decorators import compiled as compiled
     from sailviz.compiled.decorators import inlined as inlined
@@ -41,6 +42,7 @@ if TYPE_CHECKING:
 _HOMES = {
     "OPTIONS": "decorators",
     "Late": "decorators",
+    "apart": "decorators",
     "called": "decorators",
     "compiled": "decorators",
     "inlined": "decorators",

@@ -91,6 +91,12 @@ def called(function: Callable[..., Any]) -> Late:
     return _njit(function, **WITHIN)
 
 
+def apart(function: Callable[..., Any]) -> Late:
+    """Like `called`, for long functions that are called from several places or seldom: there is one copy of them, in
+    whatever they are called. (Of what a function of `inlined` calls numba would make copies too.)"""
+    return _njit(function, forceinline=False, **WITHIN)
+
+
 def summing(function: Callable[..., Any]) -> Late:
     """Like `inlined`, for sums that may be taken in any order that the compiler fixes: the same in every run."""
     return _njit(function, forceinline=True, **{**WITHIN, "fastmath": {"contract", "nsz", "reassoc"}})

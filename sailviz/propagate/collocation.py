@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from sailviz.compiled import entry, inlined
+from sailviz.compiled import apart, entry, inlined
 from sailviz.propagate.collocation_forces import fits_lanes, is_table, prepare
 from sailviz.propagate.collocation_memory import (
     BEFORE,
@@ -382,7 +382,7 @@ def first_step(y, mu, tolerance):
     return 6.5 * tolerance ** (1.0 / ORDER) * np.sqrt(r2 * np.sqrt(r2) / mu)
 
 
-@inlined
+@apart
 def surface_met(polynomial, surface, mu, samples, w):
     """s at which the polynomial first comes below the surface, else 2."""
     before, falling = -1.0, False

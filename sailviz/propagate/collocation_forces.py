@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.compiled import inlined
+from sailviz.compiled import apart, inlined
 from sailviz.constants import AU
 from sailviz.environment import atmosphere
 from sailviz.environment.atmosphere import exponential_air_drag
@@ -55,7 +55,7 @@ def is_table(steering):
     return steering == attitude.TABLE_ORBITAL or steering == attitude.TABLE_MERIDIAN
 
 
-@inlined
+@apart
 def prepare(nodes, t, h, factor, p):
     """The parts of the thrust at the nodes of [t, t + h], and the normal's components in its frame: they depend on
     time alone."""

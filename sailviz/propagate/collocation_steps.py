@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sailviz.compiled import inlined
+from sailviz.compiled import apart, inlined
 from sailviz.propagate.collocation_forces import forces_at_once, forces_one_by_one
 from sailviz.propagate.collocation_memory import (
     BEFORE,
@@ -30,6 +30,7 @@ from sailviz.propagate.collocation_memory import (
     PLACE,
     POWERS,
     REST,
+    aligned_stack,
     end_position,
     end_velocity,
     following,
@@ -125,10 +126,11 @@ def corrected(nodes, x, y, z, k, inverse2, rx, ry, rz, h2):
     return cx, cy, cz
 
 
-@inlined
+@apart
 def sweep(nodes, work, t, h, enough, at_once, burns, careful, factor, p):
     """Fit accelerations and path over [t, t + h]. enough : m2/s4, of the change of all accelerations together, squared.
     careful : keep what rounding takes. Returns whether they agree, and the number of sweeps."""
+    aligned_stack()
     y = work[Y]
     x0, y0, z0, u0, v0, w0 = y[0], y[1], y[2], y[3], y[4], y[5]
     fx, fy, fz = first_guess(nodes, t, h, y, p.gravity.mu, careful)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import random
 import signal
 from typing import NamedTuple
@@ -20,6 +21,10 @@ from sailviz.shipped import shipped_scenes
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.load_profile("repeatable")
 
+
+# Processes that tests begin import sailviz as the tests do, not from the folder in which they are begun:
+# else all that is compiled is compiled once more for that copy.
+os.environ["PYTHONSAFEPATH"] = "1"
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # begun in the background by a shell, as are then all commands
     signal.signal(signal.SIGINT, signal.default_int_handler)

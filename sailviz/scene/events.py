@@ -106,6 +106,7 @@ class Crossing(Section):
         "light_torque": "is made of the attitude, which can be watched: watch pitch or body_rate",
         "air_torque": "is made of air and attitude, which can be watched: watch air_drag or body_rate",
         "control_torque": "jumps where actuators reach their limits: watch wheel_momentum or body_rate",
+        "share": "is of all flights of an ensemble: no single flight meets it",
         "saturated": "counts a controller's updates: it is no function of state and time",
     }
 

@@ -20,7 +20,7 @@ from sailviz.scene.phases import scene_of
 from sailviz.shipped import shipped_scenes
 
 SCENES = sorted(shipped_scenes())
-MOST_JUMPS = 150  # of the thrust, each of which begins the integration anew
+MOST_JUMPS = 60  # of the thrust, each of which begins the integration anew
 
 MOST_HOURS = 2  # of a craft that turns, whose turns plain Python follows slowly
 
@@ -46,7 +46,7 @@ def test_scene_agrees_with_scipy(shipped_run, name):
     """Within 1e-8 of the distance over twenty revolutions or 2 % of the run, whichever is shorter, and one at least.
 
     Where the thrust jumps often, as far as MOST_JUMPS of its jumps; where tables are looked up, which plain Python does
-    slowly, two revolutions. How far this holds beyond is for test_accuracy to say.
+    slowly, one revolution. How far this holds beyond is for test_accuracy to say.
     """
     scene, run = shipped_run(name)
     scene = first_phase(scene)
@@ -56,7 +56,7 @@ def test_scene_agrees_with_scipy(shipped_run, name):
     last = 0.02 * scene.propagation.duration
     if a > 0:
         turn = 2 * np.pi * np.sqrt(a**3 / mu)
-        last = max(turn, min((2 if tabled(scene) else 20) * turn, last))
+        last = max(turn, min((1 if tabled(scene) else 20) * turn, last))
     if tabled(scene):  # more rows, and tables made for these dates
         own = {"duration_s": last, "outputs": 40, "tolerance": scene.propagation.tolerance}
         scene = scene.with_values({"propagation": own})

@@ -60,6 +60,8 @@ def test_a_lie_about_what_a_device_adds_is_found(lie, tmp_path, monkeypatch):
     record(FLIGHTS[flown](), tmp_path / "lie.rrd")
     flight, found = Flight(flown, tmp_path / "lie.rrd"), []
     for entity in drawn(flight.picture.entities):
+        if not any(part in entity for part in broken):
+            continue
         claim = claim_of(entity)
         try:
             claim.check(flight, entity, *claim.words(entity))

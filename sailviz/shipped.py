@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from functools import cache
 from pathlib import Path
 
@@ -18,6 +19,13 @@ def shipped_folder(kind: str) -> Path:
 def shipped_scenes() -> dict[str, Path]:
     """Name -> file of every shipped scene, e.g. "displaced/circular"."""
     return {name: path for name, path in _named().items() if not name.startswith("sweeps/")}
+
+
+def title_of(scene: Path) -> str:
+    """The title of a shipped scene: of its file only what stands before the first section is read."""
+    top = scene.read_text(encoding="utf-8").partition("\n[")[0]
+    title: str = tomllib.loads(top)["title"]
+    return title
 
 
 @cache

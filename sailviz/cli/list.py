@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import click
 
-from sailviz.shipped import shipped_scenes
+from sailviz.shipped import shipped_scenes, title_of
 
 
 @click.command("list")
 def list_scenes() -> None:
     """Name the scenes that come with sailviz."""
-    from sailviz.scene import load_scene
-
-    for name in shipped_scenes():
-        click.echo(f"{name:<34} {load_scene(name).title}")
+    scenes = shipped_scenes()
+    width = max(map(len, scenes), default=0)
+    for name, path in scenes.items():
+        click.echo(f"{name:<{width}} {title_of(path)}")

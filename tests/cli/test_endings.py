@@ -103,6 +103,7 @@ def test_ctrl_c_outside_of_the_work_is_130_too(monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("sailviz.scene.load_scene", pressed)
+    monkeypatch.setattr("sailviz.cli.list.title_of", pressed)
     for words in (["list"], ["show", "displaced/circular"]):
         result = CliRunner().invoke(main, words, catch_exceptions=False)
         assert result.exit_code == 130

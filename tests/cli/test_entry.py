@@ -19,6 +19,7 @@ from click.testing import CliRunner
 import sailviz
 from sailviz import cli
 from sailviz.cli import entry, main
+from sailviz.scene import load_scene
 from sailviz.shipped import shipped_scenes
 
 SHORT = ("--set", "propagation.duration_d=30", "--set", "propagation.outputs=20", "--set", "expect=[]")
@@ -186,9 +187,11 @@ def test_the_schema_accepts_every_shipped_scene_and_rejects_a_misspelt_key(shell
         assert not validator.is_valid(scene | {"titel": "misspelt"})
 
 
-def test_every_shipped_scene_is_listed_by_name(shell):
+def test_every_shipped_scene_is_listed_by_name_and_title(shell):
     lines = shell("list").output.splitlines()
-    assert [line.split()[0] for line in lines] == list(shipped_scenes())
+    width = max(map(len, shipped_scenes()))
+    assert [line[:width].strip() for line in lines] == list(shipped_scenes())
+    assert [line[width:].strip() for line in lines] == [load_scene(name).title for name in shipped_scenes()]
 
 
 def test_check_imports_nothing_heavy(tmp_path):

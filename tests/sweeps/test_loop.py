@@ -315,7 +315,7 @@ def test_another_definition_is_refused_with_what_changed(tmp_path):
         sailviz.sweep(**GUSTS, path=tmp_path / "other.parquet")
 
 
-LONG = ("spirals/optical-sail", "--vary", "steering.pitch_deg=20:40:160", "--set", "expect=[]", "-o", "long.parquet")
+LONG = ("spirals/optical-sail", "--vary", "steering.pitch_deg=20:40:320", "--set", "expect=[]", "-o", "long.parquet")
 LONG = (*LONG, "--report", "time_d@end")
 
 
@@ -324,7 +324,7 @@ def long_rows():
     return rows(
         sailviz.sweep(
             LONG[0],
-            {"steering.pitch_deg": "20:40:160"},
+            {"steering.pitch_deg": "20:40:320"},
             values={"expect": []},
             report=["time_d@end"],
             engine="threads",
@@ -374,7 +374,7 @@ def test_a_killed_sweep_goes_on_where_it_stopped_and_leaves_no_process_behind(tm
     begun.wait()
     begun.stderr.close()
     assert not (tmp_path / "long.parquet").exists()
-    definition, _ = define(LONG[0], {"steering.pitch_deg": "20:40:160"}, report=["time_d@end"], values={"expect": []})
+    definition, _ = define(LONG[0], {"steering.pitch_deg": "20:40:320"}, report=["time_d@end"], values={"expect": []})
     found = fly_all(definition, engine="threads", workers=2, path=tmp_path / "long.parquet")
     assert 0 < found.resumed < found.flights
     assert rows(found) == long_rows
@@ -400,7 +400,7 @@ def test_an_interrupted_sweep_leaves_a_table_of_what_was_flown(tmp_path, shell, 
     assert begun.returncode == 130
     assert "The same command goes on from there." in said
     table = pq.read_table(tmp_path / "long.parquet").drop_columns(["wall_s"]).to_pylist()
-    assert 0 < len(table) < 160
+    assert 0 < len(table) < 320
     assert table == long_rows[: len(table)]
     result = shell(*LONG, "--engine", "threads", "--workers", "2", "--json")
     assert json.loads(result.stdout)["resumed"] == len(table)

@@ -91,6 +91,8 @@ def _row(definition: Definition, scene: Scene, flight: int, until: float | None)
     except PropagationError as error:
         row["reason"], flown = str(error), [error.time]
     except Exception as error:  # whatever it is, the other flights go on
+        if isinstance(error.__cause__, KeyboardInterrupt):  # pydantic makes an error of its own of Ctrl-C
+            raise error.__cause__ from None
         row["reason"] = f"{type(error).__name__}: {error}"
     row["duration_s"] = flown[-1] if flown else 0.0
     row["wall_s"] = time.perf_counter() - began

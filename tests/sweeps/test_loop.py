@@ -422,3 +422,12 @@ def test_parts_that_came_out_of_order_become_one_table_in_order(tmp_path, gusts)
     assert index == list(range(12))
     with pytest.raises(SceneError, match="nothing varies"):
         define(SAIL, {})
+
+
+def test_ctrl_c_that_pydantic_makes_an_error_of_ends_the_sweep(monkeypatch):
+    def pressed(*_):
+        raise RuntimeError("Error calling function") from KeyboardInterrupt()
+
+    monkeypatch.setattr("sailviz.sweeps.flight._measured", pressed)
+    with pytest.raises(KeyboardInterrupt):
+        sailviz.sweep(LONG[0], {"steering.pitch_deg": "20:40:3"}, values={"expect": []}, engine="serial")

@@ -68,8 +68,10 @@ def test_a_hundred_days_of_a_free_sail_take_less_than_five_seconds():
     p = plan(load_scene(SAIL))
     state, times = begun(p), np.linspace(0, p.limit, 1000)
     out = np.empty((SIZE, len(times)))
-    begin = time.thread_time()
     given = p.schedule.breaks, p.schedule.factors, p.watch, times, out, p.limit, 1e-10, np.inf
+    short = p.schedule.breaks, p.schedule.factors, p.watch, times[:1], out, 1.0, 1e-10, np.inf
+    assert advance(begun(p), p.model, *short) == 0  # which compiles it, where it is not yet
+    begin = time.thread_time()
     assert advance(state, p.model, *given) == 0
     took = time.thread_time() - begin
     print(f"{took:.2f} s, {state.counter[4]} steps and {state.counter[5]} tried again")
